@@ -1,0 +1,1 @@
+"""Plane geometry: exact predicates, collision kernels, and the arrangement that feeds them."""

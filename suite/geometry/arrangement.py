@@ -1,0 +1,328 @@
+"""From polygons to the arrays that the kernels read: node, label, triangulate, merge, index.
+
+The outlines of workspace and obstacles are noded together on a fine grid, so that everything that
+touches does so in common vertices. Each face of the arrangement is free or solid; solid faces are
+cut into convex parts (constrained Delaunay, then Hertel and Mehlhorn 1983), and what two parts
+share is a seam. Metres, x right, y up.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TypeVar
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import MultiPolygon, Polygon
+
+from suite.geometry.kernels import ObstacleArrays
+from suite.geometry.predicates import orientation
+from suite.geometry.tolerances import GRID
+
+Point = tuple[float, float]
+Part = list[Point]
+Array = TypeVar("Array", bound=np.ndarray)
+
+FRAME_MARGIN = 0.25
+"""Width of the frame around the workspace, as a share of the workspace's larger side."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arrangement:
+    """The plane divided into free space, obstacle groups and the frame.
+
+    solid : everything that is closed, frame included; its interior is what no path may meet.
+    groups : the obstacle groups, each the union of obstacles that touch, without the frame.
+    arrays : the same as convex parts, for the kernels.
+    corners : (N, 6) float64, x, y of each corner where solid is convex, then x, y of the ends of
+        the two boundary edges that bound its free side: counter-clockwise from the first to the
+        second everything is free, over more than half a turn.
+    """
+
+    solid: MultiPolygon
+    groups: tuple[MultiPolygon, ...]
+    arrays: ObstacleArrays
+    corners: NDArray[np.float64]
+
+
+def arrange(workspace: Polygon, obstacles: Sequence[Polygon]) -> Arrangement:
+    """Divide a workspace into free space, obstacle groups and the frame around it.
+
+    Parameters
+    ----------
+    workspace : Polygon
+        Where the robot may be, valid, metres.
+    obstacles : sequence of Polygon
+        Valid, each inside the workspace; they may touch and overlap.
+
+    Returns
+    -------
+    Arrangement
+    """
+    faces, is_frame = _solid_faces(workspace, obstacles)
+    parts, group_of, frame = _grouped_parts(faces, is_frame)
+    order = sorted(range(len(parts)), key=lambda i: group_of[i])
+    parts = [parts[i] for i in order]
+    group_of = [group_of[i] for i in order]
+    edges = _Edges(parts, group_of, frame, workspace)
+    sectors = _free_sectors(edges)
+    return Arrangement(
+        solid=_as_multipolygon(shapely.union_all(faces)),
+        groups=_group_polygons(faces, parts, group_of, frame),
+        arrays=_pack(parts, group_of, frame, edges, sectors),
+        corners=_corners(sectors),
+    )
+
+
+def _as_multipolygon(geometry: shapely.Geometry) -> MultiPolygon:
+    polygons = [g for g in shapely.get_parts(geometry) if isinstance(g, Polygon)]
+    return MultiPolygon(polygons)
+
+
+def _solid_faces(
+    workspace: Polygon, obstacles: Sequence[Polygon]
+) -> tuple[list[Polygon], list[bool]]:
+    """Solid faces of the arrangement, and which of them belong to the frame."""
+    xmin, ymin, xmax, ymax = workspace.bounds
+    margin = FRAME_MARGIN * max(xmax - xmin, ymax - ymin)
+    outer = shapely.box(xmin - margin, ymin - margin, xmax + margin, ymax + margin)
+    outlines = [outer.boundary, workspace.boundary, *(o.boundary for o in obstacles)]
+    noded = shapely.union_all(outlines, grid_size=GRID)
+    faces = [f for f in shapely.get_parts(shapely.polygonize([noded])) if f.area > 0.0]
+    inside = shapely.STRtree([f.representative_point() for f in faces])
+    in_workspace = set(inside.query(workspace, predicate="contains").tolist())
+    in_obstacle = set(inside.query(list(obstacles), predicate="contains")[1].tolist())
+    solid = [i for i in range(len(faces)) if i not in in_workspace or i in in_obstacle]
+    return [faces[i] for i in solid], [i not in in_workspace for i in solid]
+
+
+def _grouped_parts(
+    faces: Sequence[Polygon], is_frame: Sequence[bool]
+) -> tuple[list[Part], list[int], int]:
+    """Convex parts of all faces, the group of each, and the number of the frame's group.
+
+    Faces of obstacles that have a vertex in common are one group; the frame is a group of its own,
+    the last, because the paper's escape distance asks where a group is joined to the border.
+    """
+    group_of_face = _join_by_vertices(
+        [f for f, out in zip(faces, is_frame, strict=True) if not out]
+    )
+    frame = len(set(group_of_face))
+    labels = iter(group_of_face)
+    triangles: list[Part] = []
+    group_of: list[int] = []
+    for face, out in zip(faces, is_frame, strict=True):
+        group = frame if out else next(labels)
+        for triangle in _triangles(face):
+            triangles.append(triangle)
+            group_of.append(group)
+    return *_merge_convex(triangles, group_of), frame
+
+
+def _join_by_vertices(faces: Sequence[Polygon]) -> list[int]:
+    """Number the connected components of faces that share vertices, in order of appearance."""
+    parent = list(range(len(faces)))
+
+    def root(i: int) -> int:
+        while parent[i] != i:
+            parent[i] = parent[parent[i]]
+            i = parent[i]
+        return i
+
+    owner: dict[Point, int] = {}
+    for i, face in enumerate(faces):
+        for point in map(tuple, shapely.get_coordinates(face).tolist()):
+            parent[root(i)] = root(owner.setdefault(point, i))
+    numbers: dict[int, int] = {}
+    return [numbers.setdefault(root(i), len(numbers)) for i in range(len(faces))]
+
+
+def _triangles(face: Polygon) -> Iterable[Part]:
+    """Constrained Delaunay triangles of a face, each counter-clockwise."""
+    for triangle in shapely.get_parts(shapely.constrained_delaunay_triangles(face)):
+        a, b, c = (tuple(p) for p in shapely.get_coordinates(triangle)[:3].tolist())
+        side = orientation(*a, *b, *c)
+        if side != 0:
+            yield [a, b, c] if side > 0 else [a, c, b]
+
+
+def _merge_convex(
+    triangles: Sequence[Part], group_of: Sequence[int]
+) -> tuple[list[Part], list[int]]:
+    """Remove shared edges of a group's parts while the result stays convex (Hertel, Mehlhorn)."""
+    parts: dict[int, Part] = dict(enumerate(triangles))
+    owner = {edge: i for i, part in parts.items() for edge in _edges_of(part)}
+    for a, b in list(owner):
+        i, j = owner.get((a, b)), owner.get((b, a))
+        if i is None or j is None or i == j or group_of[i] != group_of[j]:
+            continue
+        merged = _merged(parts[i], parts[j], a, b)
+        if merged is None:
+            continue
+        del owner[(a, b)], owner[(b, a)], parts[j]
+        parts[i] = merged
+        owner.update(dict.fromkeys(_edges_of(merged), i))
+    return list(parts.values()), [group_of[i] for i in parts]
+
+
+def _edges_of(part: Part) -> Iterable[tuple[Point, Point]]:
+    return pairwise([*part, part[0]])
+
+
+def _merged(first: Part, second: Part, a: Point, b: Point) -> Part | None:
+    """Union of two convex parts over their common edge a -> b of the first, if it is convex."""
+    i = first.index(a)
+    j = second.index(b)
+    head = first[i + 1 :] + first[: i + 1]  # b ... a
+    tail = second[j + 1 :] + second[: j + 1]  # a ... b
+    convex_at_a = orientation(*head[-2], *a, *tail[1]) >= 0
+    convex_at_b = orientation(*tail[-2], *b, *head[1]) >= 0
+    return head + tail[1:-1] if convex_at_a and convex_at_b else None
+
+
+class _Edges:
+    """Directed edges of all parts (solid on the left), and what lies on their other side."""
+
+    def __init__(
+        self, parts: Sequence[Part], group_of: Sequence[int], frame: int, workspace: Polygon
+    ) -> None:
+        self.group: dict[tuple[Point, Point], int] = {}
+        self.parts_at: dict[Point, list[int]] = defaultdict(list)
+        for i, part in enumerate(parts):
+            for edge in _edges_of(part):
+                self.group[edge] = group_of[i]
+                self.parts_at[edge[0]].append(i)
+        self.parts = parts
+        self.group_of = group_of
+        self.frame = frame
+        xmin, ymin, xmax, ymax = workspace.bounds
+        margin = 0.5 * FRAME_MARGIN * max(xmax - xmin, ymax - ymin)
+        self._limits = (xmin - margin, ymin - margin, xmax + margin, ymax + margin)
+
+    def is_seam(self, edge: tuple[Point, Point]) -> bool:
+        return edge[::-1] in self.group
+
+    def is_outer(self, edge: tuple[Point, Point]) -> bool:
+        """Whether an edge lies on the outside of the frame, where no path can come."""
+        xmin, ymin, xmax, ymax = self._limits
+        return not all(xmin < x < xmax and ymin < y < ymax for x, y in edge)
+
+    def bounding_free_space(self) -> list[tuple[Point, Point]]:
+        return [e for e in self.group if not self.is_seam(e) and not self.is_outer(e)]
+
+
+Sector = tuple[Point, Point, Point]
+"""A vertex, then the two neighbours that bound a free sector, counter-clockwise."""
+
+
+def _free_sectors(edges: _Edges) -> list[Sector]:
+    """The free sectors at each vertex of the boundary of free space."""
+    arriving: dict[Point, list[Point]] = defaultdict(list)
+    leaving: dict[Point, list[Point]] = defaultdict(list)
+    for a, b in edges.bounding_free_space():
+        leaving[a].append(b)
+        arriving[b].append(a)
+    sectors: list[Sector] = []
+    for v, sources in arriving.items():
+        if len(sources) == 1:
+            sectors.append((v, sources[0], leaving[v][0]))
+            continue
+        ways = [(_angle(v, m), m, True) for m in sources]
+        ways += [(_angle(v, n), n, False) for n in leaving[v]]
+        ways.sort(key=lambda way: way[0])
+        for (_, m, arrives), (_, n, _) in pairwise([*ways, ways[0]]):
+            if arrives:
+                sectors.append((v, m, n))
+    return sectors
+
+
+def _angle(origin: Point, target: Point) -> float:
+    return float(np.arctan2(target[1] - origin[1], target[0] - origin[0]))
+
+
+def _corners(sectors: Sequence[Sector]) -> NDArray[np.float64]:
+    rows = [(*v, *m, *n) for v, m, n in sectors if orientation(*v, *m, *n) < 0]
+    return _frozen(np.array(sorted(rows), dtype=np.float64).reshape(-1, 6))
+
+
+def _group_polygons(
+    faces: Sequence[Polygon], parts: Sequence[Part], group_of: Sequence[int], frame: int
+) -> tuple[MultiPolygon, ...]:
+    members: list[list[Polygon]] = [[] for _ in range(frame)]
+    for part, group in zip(parts, group_of, strict=True):
+        if group != frame:
+            members[group].append(Polygon(part))
+    return tuple(_as_multipolygon(shapely.union_all(m)) for m in members)
+
+
+def _pack(
+    parts: Sequence[Part],
+    group_of: Sequence[int],
+    frame: int,
+    edges: _Edges,
+    sectors: Sequence[Sector],
+) -> ObstacleArrays:
+    part_of_group: list[list[Part]] = [[] for _ in range(frame + 1)]
+    boundary: list[list[tuple[float, ...]]] = [[] for _ in range(frame + 1)]
+    border: list[list[tuple[float, ...]]] = [[] for _ in range(frame + 1)]
+    for part, group in zip(parts, group_of, strict=True):
+        part_of_group[group].append(part)
+    for edge, group in edges.group.items():
+        other = edges.group.get(edge[::-1])
+        if other != group and not edges.is_outer(edge):
+            boundary[group].append((*edge[0], *edge[1]))
+        if other == edges.frame and group != edges.frame:
+            border[group].append((*edge[0], *edge[1]))
+    for v, incident in edges.parts_at.items():
+        groups = {group_of[i] for i in incident}
+        if frame in groups:
+            for group in groups - {frame}:
+                border[group].append((*v, *v))
+    count: dict[Point, int] = defaultdict(int)
+    for v, _, _ in sectors:
+        count[v] += 1
+    pinches = sorted(v for v, n in count.items() if n > 1)
+    ways = [[_way_into(parts[i], v) for i in edges.parts_at[v]] for v in pinches]
+    group_xy = [np.array([p for part in g for p in part]).reshape(-1, 2) for g in part_of_group]
+    return ObstacleArrays(
+        part_xy=_frozen(np.array([p for part in parts for p in part], dtype=np.float64)),
+        part_start=_starts([len(part) for part in parts]),
+        part_box=_frozen(np.array([_box(np.array(part)) for part in parts])),
+        seam=_frozen(
+            np.array([edges.is_seam(e) for part in parts for e in _edges_of(part)], dtype=np.uint8)
+        ),
+        group_start=_starts([len(g) for g in part_of_group]),
+        group_box=_frozen(np.array([_box(xy) for xy in group_xy])),
+        boundary=_stacked(boundary, 4),
+        boundary_start=_starts([len(b) for b in boundary]),
+        border=_stacked(border, 4),
+        border_start=_starts([len(b) for b in border]),
+        pinch_xy=_frozen(np.array(pinches, dtype=np.float64).reshape(-1, 2)),
+        pinch_start=_starts([len(w) for w in ways]),
+        pinch_way=_stacked(ways, 2),
+    )
+
+
+def _way_into(part: Part, v: Point) -> tuple[float, float]:
+    """A direction from vertex v to the inside of a convex part: to the mean of its vertices."""
+    x, y = np.mean(part, axis=0).tolist()
+    return x - v[0], y - v[1]
+
+
+def _box(xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.concatenate([xy.min(axis=0), xy.max(axis=0)])
+
+
+def _starts(lengths: Sequence[int]) -> NDArray[np.int64]:
+    return _frozen(np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64))
+
+
+def _stacked(rows: Sequence[Sequence[tuple[float, ...]]], width: int) -> NDArray[np.float64]:
+    return _frozen(np.array([r for g in rows for r in g], dtype=np.float64).reshape(-1, width))
+
+
+def _frozen(array: Array) -> Array:
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,14 @@
+"""The few tolerances of the suite, each with its reason. Predicates have none: they are exact."""
+
+GRID = 1e-9
+"""Coordinates of scenes are snapped to multiples of this (metres, on a workspace 1 to 10,000 m wide).
+
+Two obstacles drawn to touch seldom touch in floating point: a vertex computed on a slanted edge
+lies about 1e-14 beside it. Snapping closes such slits, and is 10,000 times finer than anything
+that a robot could use."""
+
+OPTIMUM_RELATIVE = 1e-5
+"""Published optimal lengths are printed with five or six digits; agreement can't be closer."""
+
+COST_CLAIM_RELATIVE = 1e-6
+"""How far a planner's own cost may lie from the referee's before the row says that they differ."""

@@ -1,0 +1,230 @@
+"""The plugin interface: everything that a planner sees of the suite, in one file.
+
+A planner is a class with one method, ``plan``. It is found by an entry point of the group
+``kbga_bench.planners`` and run by the harness in a process of its own::
+
+    class StraightLine(Planner):
+        name = "straight-line"
+
+        def plan(self, scene, query, budget, rng, recorder):
+            path = np.array([query.start, query.goal])
+            return Plan(PlanStatus.SOLVED, path)
+
+The harness calls ``warm_up`` outside the clock, then ``plan`` inside it; a referee judges the path
+afterwards, outside the clock, and believes nothing that the plan claims.
+"""
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from suite.errors import ContractError
+from suite.scene import Query, Scene
+
+
+class PlanStatus(StrEnum):
+    """How a run ended, in a word."""
+
+    SOLVED = "solved"
+    """A path that the referee accepts."""
+    INFEASIBLE = "infeasible"
+    """The planner knows that there is no path."""
+    EXHAUSTED = "exhausted"
+    """The budget or the planner's own stop criterion ended the run without a path."""
+    REFUSED = "refused"
+    """The planner said beforehand, with a reason, that it can't do this."""
+    INVALID = "invalid"
+    """The referee rejected the path."""
+    ERROR = "error"
+    """The planner raised an exception or broke the contract."""
+    CRASHED = "crashed"
+    """The process of the run died."""
+    TIMED_OUT = "timed_out"
+    """The harness ended the run at its hard limit."""
+    OUT_OF_MEMORY = "out_of_memory"
+    """The run needed more memory than it was given."""
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """What a run may use; None means no limit. A planner keeps those that it can count.
+
+    wall_s : float, seconds of wall time.
+    generations : int, generations (or iterations, for planners that iterate).
+    checks : int, collision checks of a segment against the scene.
+    """
+
+    wall_s: float | None = None
+    generations: int | None = None
+    checks: int | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("wall_s", "generations", "checks"):
+            value = getattr(self, name)
+            if value is not None and not value > 0:
+                raise ContractError(f"budget: {name} is {value}. It must be above 0, or left out.")
+
+
+@dataclass(frozen=True, slots=True)
+class Abilities:
+    """What a planner can do.
+
+    anytime : it reports improvements while it runs.
+    deterministic : it uses no randomness at all.
+    exact : a ``SOLVED`` path is the shortest one, and it knows when there is none.
+    budgets : the fields of :class:`Budget` that it keeps.
+    """
+
+    anytime: bool = False
+    deterministic: bool = False
+    exact: bool = False
+    budgets: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """What a planner returns.
+
+    status : SOLVED, INFEASIBLE or EXHAUSTED; the other words are the harness's.
+    path : (n, 2) float64, metres. First row the start, last row the goal. None without a path.
+    claimed_cost : the planner's own idea of the path's length, metres.
+    generations : generations or iterations until the run ended.
+    generation_of_best : the one in which the returned path was first found.
+    checks : collision checks of a segment against the scene.
+    details : any further numbers that the planner wants to keep with its row.
+    """
+
+    status: PlanStatus
+    path: NDArray[np.float64] | None = None
+    claimed_cost: float | None = None
+    generations: int | None = None
+    generation_of_best: int | None = None
+    checks: int | None = None
+    details: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Improvement:
+    """A better path was found. Times in seconds since the clock started; cost in metres."""
+
+    wall_s: float
+    cpu_s: float
+    cost: float
+    generation: int | None
+    checks: int | None
+
+
+class Recorder:
+    """Takes what a planner reports while it runs, and stamps it with the run's one clock.
+
+    improvements : list of Improvement, costs falling.
+    trace : list of dicts, one for each generation that the planner chose to describe.
+    snapshots : dict from a name to a list of paths (n, 2), kept only if asked for.
+    """
+
+    def __init__(self, *, keep_snapshots: bool = False) -> None:
+        self.improvements: list[Improvement] = []
+        self.trace: list[dict[str, float]] = []
+        self.snapshots: dict[str, list[NDArray[np.float64]]] = {}
+        self.keep_snapshots = keep_snapshots
+        self.start_clock()
+
+    def start_clock(self) -> None:
+        """Set the clock to zero. The harness calls it, immediately before ``plan``."""
+        self._wall = time.perf_counter()
+        self._cpu = time.process_time()
+
+    def wall_s(self) -> float:
+        """Seconds of wall time since the clock started."""
+        return time.perf_counter() - self._wall
+
+    def cpu_s(self) -> float:
+        """Seconds of CPU time of this process since the clock started."""
+        return time.process_time() - self._cpu
+
+    def improved(
+        self, cost: float, *, generation: int | None = None, checks: int | None = None
+    ) -> None:
+        """Report that a path of this cost (metres) is now the best. Ignored unless it is better."""
+        if not self.improvements or cost < self.improvements[-1].cost:
+            self.improvements.append(
+                Improvement(self.wall_s(), self.cpu_s(), float(cost), generation, checks)
+            )
+
+    def describe_generation(self, measures: Mapping[str, float]) -> None:
+        """Add one row to the trace, such as best, mean, feasible share and diversity."""
+        self.trace.append(dict(measures))
+
+    def snapshot(self, name: str, paths: Sequence[NDArray[np.float64]]) -> None:
+        """Keep some paths under a name, for plots. Does nothing unless snapshots are asked for."""
+        if self.keep_snapshots:
+            self.snapshots[name] = [np.array(p, dtype=np.float64) for p in paths]
+
+
+@dataclass(frozen=True, slots=True)
+class NoSettings:
+    """Settings of a planner that has none."""
+
+
+class Planner(ABC):
+    """Base of all planners. Subclasses set ``name`` and write ``plan``.
+
+    name : the word under which users ask for it; the entry point has the same name.
+    Settings : a frozen dataclass whose fields all have defaults.
+    abilities : what it can do.
+    """
+
+    name: ClassVar[str]
+    Settings: ClassVar[type[Any]] = NoSettings
+    abilities: ClassVar[Abilities] = Abilities()
+
+    def __init__(self, settings: Any = None) -> None:
+        self.settings = self.Settings() if settings is None else settings
+        if not isinstance(self.settings, self.Settings):
+            raise ContractError(
+                f"{self.name}: settings are {type(settings).__name__}, "
+                f"not {self.Settings.__name__}."
+            )
+
+    @abstractmethod
+    def plan(
+        self,
+        scene: Scene,
+        query: Query,
+        budget: Budget,
+        rng: np.random.Generator,
+        recorder: Recorder,
+    ) -> Plan:
+        """Look for a short path from start to goal.
+
+        Parameters
+        ----------
+        scene : Scene
+            Obstacles as shapely polygons (``scene.obstacles``) and as arrays for the collision
+            kernels (``scene.arrays``).
+        query : Query
+            Start and goal, (2,) float64, metres.
+        budget : Budget
+            What the run may use.
+        rng : numpy.random.Generator
+            The only source of randomness.
+        recorder : Recorder
+            To be told of each better path.
+
+        Returns
+        -------
+        Plan
+        """
+
+    def warm_up(self) -> None:
+        """Compile and import whatever the first ``plan`` would; called outside the clock."""
+
+    def refuse(self, scene: Scene, query: Query, budget: Budget) -> str | None:
+        """A sentence that says why this planner can't do this run; None if it can."""
+        return None

@@ -1,0 +1,350 @@
+"""Scenes and queries: where the robot may go, what is in its way, and from where to where.
+
+Units are metres; x points right, y up. The robot is a point: its size and safety margin are
+already in the obstacles (paper section II-A), or are added by ``inflate``.
+"""
+
+import hashlib
+import json
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import combinations
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+from shapely.geometry import MultiPolygon, Polygon
+from shapely.validation import explain_validity
+
+from suite.errors import SceneError
+from suite.geometry.arrangement import Arrangement, arrange
+from suite.geometry.kernels import ObstacleArrays
+
+DEFAULT_QUERY = "main"
+
+
+class SceneWarning(UserWarning):
+    """A scene was mended on loading, in a way that its author may want to know."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Query:
+    """One planning problem in a scene.
+
+    name : str, unique in its scene.
+    start, goal : (2,) float64, metres, read-only.
+    """
+
+    name: str
+    start: NDArray[np.float64]
+    goal: NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Obstacle:
+    """An obstacle as its author drew it: a polygon, convex or concave, maybe with holes."""
+
+    name: str
+    polygon: Polygon
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A workspace, its obstacles and its queries. Built by :func:`make_scene`, then immutable.
+
+    name : str
+    workspace : Polygon without holes, metres.
+    obstacles : tuple of Obstacle, inside the workspace; they may touch and overlap.
+    queries : tuple of Query, at least one.
+    properties : read-only mapping, what the scene file says about itself.
+    path : the file that the scene came from, or None.
+    """
+
+    name: str
+    workspace: Polygon
+    obstacles: tuple[Obstacle, ...]
+    queries: tuple[Query, ...]
+    properties: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    path: Path | None = None
+
+    @cached_property
+    def arrangement(self) -> Arrangement:
+        """The plane divided into free space, obstacle groups and the frame."""
+        return arrange(self.workspace, [o.polygon for o in self.obstacles])
+
+    @property
+    def arrays(self) -> ObstacleArrays:
+        """The obstacles as convex parts, for the kernels."""
+        return self.arrangement.arrays
+
+    @cached_property
+    def hash(self) -> str:
+        """Hash of workspace and obstacles: what a result depends on, whatever the name says."""
+        content = [self.workspace.wkb_hex, *(o.polygon.wkb_hex for o in self.obstacles)]
+        return hashlib.sha256("\n".join(content).encode()).hexdigest()[:16]
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """xmin, ymin, xmax, ymax of the workspace, metres."""
+        return self.workspace.bounds
+
+    @property
+    def vertex_count(self) -> int:
+        """Number of vertices that the obstacles were drawn with."""
+        return sum(_vertex_count(o.polygon) for o in self.obstacles)
+
+    @property
+    def part_count(self) -> int:
+        """Number of convex parts of all obstacles (the frame does not count)."""
+        arrays = self.arrays
+        return int(arrays.group_start[-2])
+
+    def query(self, name: str | None = None) -> Query:
+        """The query of that name, or the first one.
+
+        Raises
+        ------
+        SceneError
+            If there is no query of that name.
+        """
+        if name is None:
+            return self.queries[0]
+        for query in self.queries:
+            if query.name == name:
+                return query
+        names = ", ".join(q.name for q in self.queries)
+        raise SceneError(f"{self.name}: no query '{name}'. It has: {names}.")
+
+    def stored_optimum(self, query: Query) -> float | None:
+        """The exact optimum that the scene file states for a query, metres; None if it has none."""
+        optima = self.properties.get("optimum", {})
+        value = optima.get(query.name) if isinstance(optima, Mapping) else None
+        return None if value is None else float(value)
+
+
+def _vertex_count(polygon: Polygon) -> int:
+    return int(shapely.get_num_coordinates(polygon)) - 1 - len(polygon.interiors)
+
+
+def make_scene(
+    name: str,
+    workspace: Polygon,
+    obstacles: Iterable[Polygon | Obstacle],
+    queries: Mapping[str, tuple[ArrayLike, ArrayLike]],
+    *,
+    properties: Mapping[str, Any] | None = None,
+    path: Path | None = None,
+    inflate: float = 0.0,
+) -> Scene:
+    """Check and normalise the pieces of a scene, and put them together.
+
+    Parameters
+    ----------
+    name : str
+        Of the scene; part of the random stream of its runs.
+    workspace : Polygon
+        Where the robot may be, metres. Its holes become obstacles.
+    obstacles : iterable of Polygon or Obstacle
+        What sticks out of the workspace is cut off, with a :class:`SceneWarning`.
+    queries : mapping from name to (start, goal)
+        Points (2,), metres.
+    properties : mapping, optional
+        Kept with the scene as it is.
+    path : Path, optional
+        The file that the pieces came from; named in errors.
+    inflate : float
+        Radius of the robot, metres: obstacles grow by it and the workspace shrinks by it.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        If a polygon is not valid, or a start or goal is not in free space.
+
+    Examples
+    --------
+    >>> scene = make_scene(
+    ...     "one box", shapely.box(0, 0, 10, 10), [shapely.box(4, 0, 6, 8)],
+    ...     {"main": ((1, 1), (9, 1))},
+    ... )
+    >>> scene.part_count, scene.query().goal.tolist()
+    (1, [9.0, 1.0])
+    """
+    where = path.name if path is not None else name
+    named = [
+        o if isinstance(o, Obstacle) else Obstacle(f"obstacle {i}", o)
+        for i, o in enumerate(obstacles, 1)
+    ]
+    _check_polygon(where, "workspace", workspace)
+    for obstacle in named:
+        _check_polygon(where, obstacle.name, obstacle.polygon)
+    _check_unique(where, "obstacles", [o.name for o in named])
+    if not np.isfinite(inflate) or inflate < 0.0:
+        raise SceneError(f"{where}: inflate is {inflate}. Give a radius of 0 m or more.")
+    room, named = _normalise(where, workspace, named, inflate)
+    if not queries:
+        raise SceneError(
+            f"{where}: no start. Add a feature of role 'start' and one of role 'goal'."
+        )
+    scene = Scene(
+        name=name,
+        workspace=room,
+        obstacles=tuple(named),
+        queries=tuple(
+            Query(
+                key,
+                _as_point(where, f"start of query '{key}'", start),
+                _as_point(where, f"goal of query '{key}'", goal),
+            )
+            for key, (start, goal) in queries.items()
+        ),
+        properties=MappingProxyType(dict(properties or {})),
+        path=path,
+    )
+    for query in scene.queries:
+        _check_free(where, scene, f"start of query '{query.name}'", query.start)
+        _check_free(where, scene, f"goal of query '{query.name}'", query.goal)
+    return scene
+
+
+def _check_unique(where: str, what: str, names: Sequence[str]) -> None:
+    for name in names:
+        if names.count(name) > 1:
+            raise SceneError(
+                f"{where}: two {what} are named '{name}'. Give each a name of its own."
+            )
+
+
+def _check_polygon(where: str, what: str, polygon: Polygon) -> None:
+    """Refuse a polygon that is not one, and say where it goes wrong."""
+    xy = shapely.get_coordinates(polygon)
+    bad = np.flatnonzero(~np.isfinite(xy).all(axis=1))
+    if bad.size:
+        x, y = xy[bad[0]]
+        raise SceneError(
+            f"{where}, {what}: vertex {bad[0] + 1} is ({x}, {y}). Coordinates must be finite numbers."
+        )
+    for ring in (polygon.exterior, *polygon.interiors):
+        corners = np.unique(shapely.get_coordinates(ring), axis=0)
+        if len(corners) < 3:
+            raise SceneError(
+                f"{where}, {what}: only {len(corners)} different vertices. A ring needs three."
+            )
+    if polygon.area == 0.0:
+        raise SceneError(f"{where}, {what}: its area is zero. Give it some width, or leave it out.")
+    crossing = _first_crossing(polygon)
+    if crossing is not None:
+        i, j, x, y = crossing
+        raise SceneError(
+            f"{where}, {what}: edges {i} and {j} cross at ({x:g}, {y:g}). "
+            "List its vertices in order, or split it in two."
+        )
+    if not polygon.is_valid:
+        raise SceneError(
+            f"{where}, {what}: {explain_validity(polygon)}. Its rings must not cross, overlap "
+            "or touch along a line; split it in several polygons."
+        )
+
+
+def _first_crossing(polygon: Polygon) -> tuple[int, int, float, float] | None:
+    """Numbers (from 1) of the first two edges of a ring that cross, and where; None if none do."""
+    if polygon.is_valid:
+        return None
+    xy = shapely.get_coordinates(polygon.exterior)
+    edges = shapely.linestrings(np.stack([xy[:-1], xy[1:]], axis=1))
+    for i, j in combinations(range(len(edges)), 2):
+        if edges[i].crosses(edges[j]):
+            point = edges[i].intersection(edges[j])
+            return i + 1, j + 1, point.x, point.y
+    return None
+
+
+def _normalise(
+    where: str, workspace: Polygon, obstacles: Sequence[Obstacle], inflate: float
+) -> tuple[Polygon, list[Obstacle]]:
+    """Make holes of the workspace obstacles, grow by the robot, and cut at the workspace."""
+    room = Polygon(workspace.exterior)
+    holes = [
+        Obstacle(f"hole {i} of the workspace", Polygon(h))
+        for i, h in enumerate(workspace.interiors, 1)
+    ]
+    if inflate > 0.0:
+        shrunk = room.buffer(-inflate, join_style="mitre")
+        if not isinstance(shrunk, Polygon) or shrunk.is_empty:
+            raise SceneError(
+                f"{where}: a robot of radius {inflate} m has no room in the workspace."
+            )
+        room = shrunk
+    shapely.prepare(room)
+    kept: list[Obstacle] = []
+    for obstacle in (*obstacles, *holes):
+        polygon = obstacle.polygon.buffer(inflate) if inflate > 0.0 else obstacle.polygon
+        if room.covers(polygon):
+            kept.append(Obstacle(obstacle.name, polygon))
+            continue
+        pieces = [
+            p
+            for p in shapely.get_parts(room.intersection(polygon))
+            if isinstance(p, Polygon) and p.area > 0.0
+        ]
+        if inflate == 0.0:
+            warnings.warn(
+                f"{where}, {obstacle.name}: sticks out of the workspace and was cut at its border"
+                + ("." if pieces else "; nothing of it is left."),
+                SceneWarning,
+                stacklevel=4,
+            )
+        for i, piece in enumerate(pieces, 1):
+            suffix = f" ({i})" if len(pieces) > 1 else ""
+            kept.append(Obstacle(obstacle.name + suffix, piece))
+    return room, kept
+
+
+def _as_point(where: str, what: str, point: ArrayLike) -> NDArray[np.float64]:
+    try:
+        xy = np.array(point, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise SceneError(f"{where}, {what}: {point!r} is not a point. Give [x, y].") from error
+    if xy.shape != (2,):
+        raise SceneError(f"{where}, {what}: {point!r} is not a point. Give [x, y].")
+    if not np.isfinite(xy).all():
+        raise SceneError(
+            f"{where}, {what}: ({xy[0]}, {xy[1]}). Coordinates must be finite numbers."
+        )
+    xy += 0.0  # -0.0 and 0.0 are one place; hashes of rows must agree
+    xy.setflags(write=False)
+    return xy
+
+
+def _check_free(where: str, scene: Scene, what: str, point: NDArray[np.float64]) -> None:
+    place = shapely.Point(point)
+    if not scene.workspace.covers(place):
+        raise SceneError(
+            f"{where}, {what}: ({point[0]:g}, {point[1]:g}) lies outside the workspace "
+            f"{tuple(scene.bounds)}. Move it inside."
+        )
+    if scene.arrangement.solid.contains(place):
+        names = [o.name for o in scene.obstacles if o.polygon.intersects(place)]
+        raise SceneError(
+            f"{where}, {what}: ({point[0]:g}, {point[1]:g}) lies inside {' and '.join(names)}. "
+            "Move it to free space."
+        )
+
+
+def scene_fingerprint(scene: Scene, query: Query) -> str:
+    """Hash of a scene's geometry and one query: the key under which results are kept."""
+    ends = json.dumps([query.start.tolist(), query.goal.tolist()])
+    return hashlib.sha256(f"{scene.hash}\n{ends}".encode()).hexdigest()[:16]
+
+
+def as_polygons(geometry: Polygon | MultiPolygon) -> list[Polygon]:
+    """The polygons of a polygon or multipolygon."""
+    return [geometry] if isinstance(geometry, Polygon) else list(geometry.geoms)
