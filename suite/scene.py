@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations
+from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -18,12 +18,13 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
-from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry import LinearRing, LineString, MultiPolygon, Polygon
 from shapely.validation import explain_validity
 
 from suite.errors import SceneError
 from suite.geometry.arrangement import Arrangement, arrange
 from suite.geometry.kernels import ObstacleArrays
+from suite.geometry.tolerances import GRID, GRID_DECIMALS, LARGEST
 
 DEFAULT_QUERY = "main"
 
@@ -71,6 +72,17 @@ class Scene:
     queries: tuple[Query, ...]
     properties: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     path: Path | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the arrangement: its arrays would come back writable, another type to numba."""
+        state = {k: v for k, v in self.__dict__.items() if k != "arrangement"}
+        return state | {"properties": dict(self.properties)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, properties=MappingProxyType(state["properties"]))
+        for query in self.queries:  # a pickle forgets that arrays are read-only
+            query.start.setflags(write=False)
+            query.goal.setflags(write=False)
 
     @cached_property
     def arrangement(self) -> Arrangement:
@@ -226,11 +238,12 @@ def _check_unique(where: str, what: str, names: Sequence[str]) -> None:
 def _check_polygon(where: str, what: str, polygon: Polygon) -> None:
     """Refuse a polygon that is not one, and say where it goes wrong."""
     xy = shapely.get_coordinates(polygon)
-    bad = np.flatnonzero(~np.isfinite(xy).all(axis=1))
+    bad = np.flatnonzero(~(np.abs(xy) <= LARGEST).all(axis=1))  # so written, NaN is bad too
     if bad.size:
         x, y = xy[bad[0]]
         raise SceneError(
-            f"{where}, {what}: vertex {bad[0] + 1} is ({x}, {y}). Coordinates must be finite numbers."
+            f"{where}, {what}: vertex {bad[0] + 1} is ({x}, {y}). "
+            f"Coordinates must be finite numbers, in metres, up to {LARGEST:g}."
         )
     for ring in (polygon.exterior, *polygon.interiors):
         corners = np.unique(shapely.get_coordinates(ring), axis=0)
@@ -238,33 +251,35 @@ def _check_polygon(where: str, what: str, polygon: Polygon) -> None:
             raise SceneError(
                 f"{where}, {what}: only {len(corners)} different vertices. A ring needs three."
             )
+        crossing = _first_crossing(ring)
+        if crossing is not None:
+            i, j, x, y = crossing
+            raise SceneError(
+                f"{where}, {what}: edges {i} and {j} cross at ({x:g}, {y:g}). "
+                "List its vertices in order, or split it in two."
+            )
     if polygon.area == 0.0:
         raise SceneError(f"{where}, {what}: its area is zero. Give it some width, or leave it out.")
-    crossing = _first_crossing(polygon)
-    if crossing is not None:
-        i, j, x, y = crossing
-        raise SceneError(
-            f"{where}, {what}: edges {i} and {j} cross at ({x:g}, {y:g}). "
-            "List its vertices in order, or split it in two."
-        )
     if not polygon.is_valid:
         raise SceneError(
             f"{where}, {what}: {explain_validity(polygon)}. Its rings must not cross, overlap "
             "or touch along a line; split it in several polygons."
         )
+    if shapely.set_precision(polygon, GRID).is_empty:
+        raise SceneError(f"{where}, {what}: narrower than {GRID:g} m. Coordinates are metres.")
 
 
-def _first_crossing(polygon: Polygon) -> tuple[int, int, float, float] | None:
+def _first_crossing(ring: LinearRing) -> tuple[int, int, float, float] | None:
     """Numbers (from 1) of the first two edges of a ring that cross, and where; None if none do."""
-    if polygon.is_valid:
+    if ring.is_simple:
         return None
-    xy = shapely.get_coordinates(polygon.exterior)
-    edges = shapely.linestrings(np.stack([xy[:-1], xy[1:]], axis=1))
-    for i, j in combinations(range(len(edges)), 2):
-        if edges[i].crosses(edges[j]):
-            point = edges[i].intersection(edges[j])
-            return i + 1, j + 1, point.x, point.y
-    return None
+    edges = [LineString(ends) for ends in pairwise(ring.coords)]
+    pairs = shapely.STRtree(edges).query(edges, predicate="crosses").T.tolist()
+    if not pairs:
+        return None
+    i, j = min(pairs)
+    point = edges[i].intersection(edges[j])
+    return i + 1, j + 1, point.x, point.y
 
 
 def _normalise(
@@ -277,17 +292,19 @@ def _normalise(
         for i, h in enumerate(workspace.interiors, 1)
     ]
     if inflate > 0.0:
-        shrunk = room.buffer(-inflate, join_style="mitre")
+        shrunk = room.buffer(-inflate)
         if not isinstance(shrunk, Polygon) or shrunk.is_empty:
             raise SceneError(
                 f"{where}: a robot of radius {inflate} m has no room in the workspace."
             )
         room = shrunk
-    shapely.prepare(room)
+    # A vertex computed on a slanted border lies 1e-16 beside it: that does not stick out.
+    reach = room.buffer(GRID, join_style="mitre")
+    shapely.prepare(reach)
     kept: list[Obstacle] = []
     for obstacle in (*obstacles, *holes):
         polygon = obstacle.polygon.buffer(inflate) if inflate > 0.0 else obstacle.polygon
-        if room.covers(polygon):
+        if reach.covers(polygon):
             kept.append(Obstacle(obstacle.name, polygon))
             continue
         pieces = [
@@ -315,10 +332,13 @@ def _as_point(where: str, what: str, point: ArrayLike) -> NDArray[np.float64]:
         raise SceneError(f"{where}, {what}: {point!r} is not a point. Give [x, y].") from error
     if xy.shape != (2,):
         raise SceneError(f"{where}, {what}: {point!r} is not a point. Give [x, y].")
-    if not np.isfinite(xy).all():
+    if not (np.abs(xy) <= LARGEST).all():
         raise SceneError(
-            f"{where}, {what}: ({xy[0]}, {xy[1]}). Coordinates must be finite numbers."
+            f"{where}, {what}: ({xy[0]}, {xy[1]}). "
+            f"Coordinates must be finite numbers, in metres, up to {LARGEST:g}."
         )
+    # On the grid of the obstacles, so that a start on a vertex or a border stays there.
+    xy = np.round(xy, GRID_DECIMALS)
     xy += 0.0  # -0.0 and 0.0 are one place; hashes of rows must agree
     xy.setflags(write=False)
     return xy
@@ -326,13 +346,14 @@ def _as_point(where: str, what: str, point: ArrayLike) -> NDArray[np.float64]:
 
 def _check_free(where: str, scene: Scene, what: str, point: NDArray[np.float64]) -> None:
     place = shapely.Point(point)
-    if not scene.workspace.covers(place):
+    if scene.workspace.distance(place) > GRID:
         raise SceneError(
             f"{where}, {what}: ({point[0]:g}, {point[1]:g}) lies outside the workspace "
             f"{tuple(scene.bounds)}. Move it inside."
         )
     if scene.arrangement.solid.contains(place):
-        names = [o.name for o in scene.obstacles if o.polygon.intersects(place)]
+        names = [o.name for o in scene.obstacles if o.polygon.distance(place) <= GRID]
+        names = names or ["the border of the workspace"]
         raise SceneError(
             f"{where}, {what}: ({point[0]:g}, {point[1]:g}) lies inside {' and '.join(names)}. "
             "Move it to free space."

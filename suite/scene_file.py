@@ -25,10 +25,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from shapely.geometry import Polygon, mapping
 
 from suite.errors import SceneError
+from suite.geometry.tolerances import LARGEST
 from suite.scene import DEFAULT_QUERY, Obstacle, Scene, make_scene
 
 ROLES = ("workspace", "obstacle", "start", "goal")
@@ -110,6 +110,8 @@ def _load(path: Path) -> dict[str, Any]:
         raise SceneError(
             f"{path.name}, line {error.lineno}, column {error.colno}: not JSON ({error.msg})."
         ) from error
+    except (ValueError, RecursionError) as error:  # numbers too long, or nested too deep
+        raise SceneError(f"{path.name}: can't be read as JSON ({error}).") from error
     if not isinstance(document, dict):
         raise SceneError(f"{path.name}: holds no JSON object. A scene is a FeatureCollection.")
     return document
@@ -175,10 +177,13 @@ def _xy(where: str, what: str, point: Any) -> tuple[float, float]:
         isinstance(v, bool) or not isinstance(v, int | float) for v in numbers
     ):
         raise SceneError(f"{where}, {what}: {point!r} is not [x, y].")
-    x, y = float(numbers[0]), float(numbers[1])
-    if not np.isfinite([x, y]).all():
-        raise SceneError(f"{where}, {what}: ({x}, {y}). Coordinates must be finite numbers.")
-    return x + 0.0, y + 0.0
+    x, y = numbers
+    if not (abs(x) <= LARGEST and abs(y) <= LARGEST):  # so written, NaN is refused too
+        raise SceneError(
+            f"{where}, {what}: {point!s:.60}. "
+            f"Coordinates must be finite numbers, in metres, up to {LARGEST:g}."
+        )
+    return float(x) + 0.0, float(y) + 0.0
 
 
 def _point(where: str, number: int, role: str, geometry: Any) -> tuple[float, float]:

@@ -39,12 +39,14 @@ class Arrangement:
     corners : (N, 6) float64, x, y of each corner where solid is convex, then x, y of the ends of
         the two boundary edges that bound its free side: counter-clockwise from the first to the
         second everything is free, over more than half a turn.
+    corner_group : (N,) int64, the group of each corner's first boundary edge.
     """
 
     solid: MultiPolygon
     groups: tuple[MultiPolygon, ...]
     arrays: ObstacleArrays
     corners: NDArray[np.float64]
+    corner_group: NDArray[np.int64]
 
 
 def arrange(workspace: Polygon, obstacles: Sequence[Polygon]) -> Arrangement:
@@ -68,11 +70,13 @@ def arrange(workspace: Polygon, obstacles: Sequence[Polygon]) -> Arrangement:
     group_of = [group_of[i] for i in order]
     edges = _Edges(parts, group_of, frame, workspace)
     sectors = _free_sectors(edges)
+    corners, corner_group = _corners(sectors, edges)
     return Arrangement(
         solid=_as_multipolygon(shapely.union_all(faces)),
-        groups=_group_polygons(faces, parts, group_of, frame),
+        groups=_group_polygons(parts, group_of, frame),
         arrays=_pack(parts, group_of, frame, edges, sectors),
-        corners=_corners(sectors),
+        corners=corners,
+        corner_group=corner_group,
     )
 
 
@@ -93,7 +97,8 @@ def _solid_faces(
     faces = [f for f in shapely.get_parts(shapely.polygonize([noded])) if f.area > 0.0]
     inside = shapely.STRtree([f.representative_point() for f in faces])
     in_workspace = set(inside.query(workspace, predicate="contains").tolist())
-    in_obstacle = set(inside.query(list(obstacles), predicate="contains")[1].tolist())
+    drawn = np.array(obstacles, dtype=np.object_)  # a list would lose its type when it is empty
+    in_obstacle = set(inside.query(drawn, predicate="contains")[1].tolist())
     solid = [i for i in range(len(faces)) if i not in in_workspace or i in in_obstacle]
     return [faces[i] for i in solid], [i not in in_workspace for i in solid]
 
@@ -161,7 +166,9 @@ def _merge_convex(
         merged = _merged(parts[i], parts[j], a, b)
         if merged is None:
             continue
-        del owner[(a, b)], owner[(b, a)], parts[j]
+        for edge in (*_edges_of(parts[i]), *_edges_of(parts[j])):
+            del owner[edge]
+        del parts[j]
         parts[i] = merged
         owner.update(dict.fromkeys(_edges_of(merged), i))
     return list(parts.values()), [group_of[i] for i in parts]
@@ -177,6 +184,12 @@ def _merged(first: Part, second: Part, a: Point, b: Point) -> Part | None:
     j = second.index(b)
     head = first[i + 1 :] + first[: i + 1]  # b ... a
     tail = second[j + 1 :] + second[: j + 1]  # a ... b
+    # A vertex inside the common side would be left over as a spike: the side goes as a whole.
+    while head[1] == tail[-2]:
+        head, tail = head[1:], tail[:-1]
+    while head[-2] == tail[1]:
+        head, tail = head[:-1], tail[1:]
+    a, b = tail[0], head[0]
     convex_at_a = orientation(*head[-2], *a, *tail[1]) >= 0
     convex_at_b = orientation(*tail[-2], *b, *head[1]) >= 0
     return head + tail[1:-1] if convex_at_a and convex_at_b else None
@@ -242,13 +255,18 @@ def _angle(origin: Point, target: Point) -> float:
     return float(np.arctan2(target[1] - origin[1], target[0] - origin[0]))
 
 
-def _corners(sectors: Sequence[Sector]) -> NDArray[np.float64]:
-    rows = [(*v, *m, *n) for v, m, n in sectors if orientation(*v, *m, *n) < 0]
-    return _frozen(np.array(sorted(rows), dtype=np.float64).reshape(-1, 6))
+def _corners(
+    sectors: Sequence[Sector], edges: _Edges
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Free sectors of more than half a turn, in order of place, and the group of each."""
+    found = sorted((v, m, n) for v, m, n in sectors if orientation(*v, *m, *n) < 0)
+    rows = np.array(found, dtype=np.float64).reshape(-1, 6)
+    groups = np.array([edges.group[(m, v)] for v, m, _ in found], dtype=np.int64)
+    return _frozen(rows), _frozen(groups)
 
 
 def _group_polygons(
-    faces: Sequence[Polygon], parts: Sequence[Part], group_of: Sequence[int], frame: int
+    parts: Sequence[Part], group_of: Sequence[int], frame: int
 ) -> tuple[MultiPolygon, ...]:
     members: list[list[Polygon]] = [[] for _ in range(frame)]
     for part, group in zip(parts, group_of, strict=True):

@@ -50,17 +50,6 @@ class ObstacleArrays(NamedTuple):
 
 
 @njit(cache=True)
-def _boxes_apart(ax: float, ay: float, bx: float, by: float, box: np.ndarray, i: int) -> bool:
-    """Whether the box of segment a-b and box i have no point in common."""
-    return (
-        (ax > box[i, 2] and bx > box[i, 2])
-        or (ax < box[i, 0] and bx < box[i, 0])
-        or (ay > box[i, 3] and by > box[i, 3])
-        or (ay < box[i, 1] and by < box[i, 1])
-    )
-
-
-@njit(cache=True)
 def _between(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> bool:
     """Whether p, known to lie on the line a-b, lies strictly between a and b."""
     if ax != bx:
@@ -82,24 +71,28 @@ def _shares_seam(
 
 @njit(cache=True)
 def segment_enters_part(
-    ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays, part: int
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    part_xy: np.ndarray,
+    seam: np.ndarray,
+    first: int,
+    last: int,
 ) -> bool:
     """Whether segment a-b meets the interior of a convex part, or runs along one of its seams.
 
-    Separating axes: two convex sets in the plane are apart if and only if the line of one of
-    their edges separates them (Gottschalk 1996). Touching is allowed, entering is not.
+    The part has the vertices ``first`` to ``last`` of ``part_xy``. Separating axes: two convex
+    sets in the plane are apart if and only if the line of one of their edges separates them
+    (Gottschalk 1996). Touching is allowed, entering is not.
     """
-    first = arrays.part_start[part]
-    last = arrays.part_start[part + 1] - 1
     separated = False
     left = False
     right = False
-    px = arrays.part_xy[last, 0]
-    py = arrays.part_xy[last, 1]
+    px, py = part_xy[last, 0], part_xy[last, 1]
     edge = last
     for i in range(first, last + 1):
-        qx = arrays.part_xy[i, 0]
-        qy = arrays.part_xy[i, 1]
+        qx, qy = part_xy[i, 0], part_xy[i, 1]
         side_a = orientation(px, py, qx, qy, ax, ay)
         side_b = orientation(px, py, qx, qy, bx, by)
         if side_a <= 0 and side_b <= 0:
@@ -108,7 +101,7 @@ def segment_enters_part(
             # On the edge's line: outside the part, but closed where the edge is a seam. Other
             # edges may lie on the same line, so the loop goes on.
             separated = True
-            if arrays.seam[edge] and _shares_seam(ax, ay, bx, by, px, py, qx, qy):
+            if seam[edge] and _shares_seam(ax, ay, bx, by, px, py, qx, qy):
                 return True
         if not separated:
             side = orientation(ax, ay, bx, by, qx, qy)
@@ -121,18 +114,59 @@ def segment_enters_part(
 
 
 @njit(cache=True)
-def segment_enters_group(
+def next_group_entered(
     ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays, group: int
-) -> bool:
-    """Whether segment a-b enters any part of an obstacle group; boxes first (paper II-B)."""
-    if _boxes_apart(ax, ay, bx, by, arrays.group_box, group):
-        return False
-    for part in range(arrays.group_start[group], arrays.group_start[group + 1]):
-        if not _boxes_apart(ax, ay, bx, by, arrays.part_box, part) and segment_enters_part(
-            ax, ay, bx, by, arrays, part
+) -> int:
+    """First obstacle group, from number ``group`` on, that segment a-b enters; -1 if none.
+
+    Boxes first: those of the groups, then those of their parts (paper II-B).
+    """
+    # Each access to a field of the tuple counts references, which costs more than a box test.
+    group_box, group_start = arrays.group_box, arrays.group_start
+    part_box, part_start = arrays.part_box, arrays.part_start
+    part_xy, seam = arrays.part_xy, arrays.seam
+    xmin, xmax = min(ax, bx), max(ax, bx)
+    ymin, ymax = min(ay, by), max(ay, by)
+    for g in range(group, group_box.shape[0]):
+        if (
+            xmin > group_box[g, 2]
+            or xmax < group_box[g, 0]
+            or ymin > group_box[g, 3]
+            or ymax < group_box[g, 1]
         ):
-            return True
-    return False
+            continue
+        for part in range(group_start[g], group_start[g + 1]):
+            if (
+                xmin > part_box[part, 2]
+                or xmax < part_box[part, 0]
+                or ymin > part_box[part, 3]
+                or ymax < part_box[part, 1]
+            ):
+                continue
+            first, last = part_start[part], part_start[part + 1] - 1
+            if segment_enters_part(ax, ay, bx, by, part_xy, seam, first, last):
+                return g
+        if ax == bx and ay == by and _is_inner_vertex(ax, ay, arrays, g):
+            return g
+    return -1
+
+
+@njit(cache=True)
+def _is_inner_vertex(x: float, y: float, arrays: ObstacleArrays, group: int) -> bool:
+    """Whether point (x, y) is a vertex of the group with solid, parts and seams, all around it."""
+    part_xy, part_start, seam = arrays.part_xy, arrays.part_start, arrays.seam
+    found = False
+    for part in range(part_start.size - 1):
+        last = part_start[part + 1] - 1
+        before = last
+        for i in range(part_start[part], last + 1):
+            if part_xy[i, 0] == x and part_xy[i, 1] == y:
+                if not (seam[before] and seam[i]):
+                    return False
+                if arrays.group_start[group] <= part < arrays.group_start[group + 1]:
+                    found = True
+            before = i
+    return found
 
 
 @njit(cache=True)
@@ -193,9 +227,8 @@ def segment_slips_through(
 @njit(cache=True)
 def segment_enters(ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays) -> bool:
     """Whether segment a-b leaves free space: enters an obstacle, the frame, or a closed passage."""
-    for group in range(arrays.group_box.shape[0]):
-        if segment_enters_group(ax, ay, bx, by, arrays, group):
-            return True
+    if next_group_entered(ax, ay, bx, by, arrays, 0) >= 0:
+        return True
     return segment_slips_through(ax, ay, bx, by, arrays)
 
 
@@ -219,8 +252,15 @@ def first_collision(path: np.ndarray, arrays: ObstacleArrays) -> int:
         bx, by = path[i + 1, 0], path[i + 1, 1]
         if segment_enters(ax, ay, bx, by, arrays):
             return i
-        if i + 2 < path.shape[0]:
-            k = pinch_at(bx, by, arrays)
-            if k >= 0 and turn_is_closed(ax, ay, path[i + 2, 0], path[i + 2, 1], arrays, k):
-                return i
+        k = pinch_at(bx, by, arrays)
+        j = i + 2
+        while k >= 0 and j < path.shape[0] and path[j, 0] == bx and path[j, 1] == by:
+            j += 1  # a path that waits in the pinch point bends there all the same
+        arrives = k >= 0 and not (ax == bx and ay == by)
+        if (
+            arrives
+            and j < path.shape[0]
+            and turn_is_closed(ax, ay, path[j, 0], path[j, 1], arrays, k)
+        ):
+            return i
     return -1

@@ -1,11 +1,16 @@
 """The few tolerances of the suite, each with its reason. Predicates have none: they are exact."""
 
+GRID_DECIMALS = 9
 GRID = 1e-9
-"""Coordinates of scenes are snapped to multiples of this (metres, on a workspace 1 to 10,000 m wide).
+"""Coordinates of scenes are snapped to multiples of this (metres, on workspaces of 1 to 10,000 m).
 
 Two obstacles drawn to touch seldom touch in floating point: a vertex computed on a slanted edge
 lies about 1e-14 beside it. Snapping closes such slits, and is 10,000 times finer than anything
 that a robot could use."""
+
+LARGEST = 1e9
+"""Largest coordinate that a scene may have (metres). The exact predicates need products of two
+coordinates without overflow; a scene beyond this has its unit or its origin wrong."""
 
 OPTIMUM_RELATIVE = 1e-5
 """Published optimal lengths are printed with five or six digits; agreement can't be closer."""

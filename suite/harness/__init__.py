@@ -1,0 +1,1 @@
+"""Running a matrix: what to run, one run, and its process."""

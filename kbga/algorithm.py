@@ -1,0 +1,169 @@
+"""KBGA as an object: set up on a scene, evolved generation by generation (paper II-D, Fig. 5)."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kbga.encoding import empty_population, path_of
+from kbga.evolution import Rates, best_feasible, first_population, next_generation
+from kbga.operators.detour import make_scratch
+from kbga.problem import make_problem
+from kbga.settings import KBGASettings
+from suite.scene import Query, Scene
+
+
+@dataclass(frozen=True, slots=True)
+class GenerationReport:
+    """What there is to say about one generation.
+
+    generation : int, 0 for the first population.
+    best, mean : float, cost of the best chromosome and of all, Eq. (1), metres.
+    feasible_share : float, share of feasible chromosomes.
+    diversity : float, share of chromosomes that differ from all before them in the population.
+    checks : int, collision checks of a segment so far.
+    """
+
+    generation: int
+    best: float
+    mean: float
+    feasible_share: float
+    diversity: float
+    checks: int
+
+
+class KBGA:
+    """The knowledge-based genetic algorithm on one query of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    query : Query
+    settings : KBGASettings
+    rng : numpy.random.Generator
+        The only source of randomness.
+
+    Attributes
+    ----------
+    population : Population
+        The current parents; the random first population after construction.
+    generation : int
+        Generations done.
+    best_path : (n, 2) float64, metres, the best feasible path so far; None before there is one.
+    best_cost : float, its length, metres; infinite before there is one.
+    generation_of_best : int, the generation in which it was found.
+    """
+
+    def __init__(
+        self, scene: Scene, query: Query, settings: KBGASettings, rng: np.random.Generator
+    ) -> None:
+        self.settings = settings
+        self._rng = rng
+        self._problem = make_problem(scene.arrangement, scene.bounds, settings.resolution)
+        self._rates = Rates(
+            settings.crossover_probability,
+            settings.mutation_probability,
+            settings.repair_probability,
+            settings.deletion_probability,
+            settings.improvement_probability,
+            settings.tournament_size,
+            settings.penalty,
+            settings.repair_candidates,
+            settings.improvement_radius,
+        )
+        self.population = empty_population(settings.population_size, settings.max_nodes)
+        self._children = empty_population(settings.population_size, settings.max_nodes)
+        self._scratch = make_scratch()
+        self._counter = np.zeros(1, np.int64)
+        self.generation = 0
+        self.best_path: NDArray[np.float64] | None = None
+        self.best_cost = float("inf")
+        self.generation_of_best = 0
+        first_population(
+            self.population,
+            query.start,
+            query.goal,
+            settings.initial_nodes,
+            self._problem,
+            settings.penalty,
+            rng,
+            self._counter,
+        )
+        self._take_best()
+
+    @property
+    def checks(self) -> int:
+        """Collision checks of a segment against the scene so far."""
+        return int(self._counter[0])
+
+    @property
+    def stagnant(self) -> bool:
+        """Whether the best path has stood unchanged for as long as the settings allow."""
+        return (
+            self.best_path is not None
+            and self.generation - self.generation_of_best >= self.settings.stagnation
+        )
+
+    def step(self) -> bool:
+        """Do one generation; whether it found a better feasible path."""
+        next_generation(
+            self.population,
+            self._children,
+            self._scratch,
+            self._problem,
+            self._rates,
+            self._rng,
+            self._counter,
+        )
+        self.population, self._children = self._children, self.population
+        self.generation += 1
+        return self._take_best()
+
+    def _take_best(self) -> bool:
+        best = best_feasible(self.population)
+        chromosomes = self.population.chromosomes
+        if best < 0 or not chromosomes["cost"][best] < self.best_cost:
+            return False
+        self.best_path = path_of(self.population, best)
+        self.best_cost = float(chromosomes["cost"][best])
+        self.generation_of_best = self.generation
+        return True
+
+    def report(self) -> GenerationReport:
+        """Measures of the current population."""
+        nodes, chromosomes = self.population
+        distinct = {
+            row["gene"][: size + 1].tobytes()
+            for row, size in zip(nodes, chromosomes["size"], strict=True)
+        }
+        return GenerationReport(
+            generation=self.generation,
+            best=float(chromosomes["cost"].min()),
+            mean=float(chromosomes["cost"].mean()),
+            feasible_share=float((chromosomes["infeasible"] == 0).mean()),
+            diversity=len(distinct) / len(nodes),
+            checks=self.checks,
+        )
+
+    def paths(self) -> list[NDArray[np.float64]]:
+        """All paths of the current population, each (n, 2), metres."""
+        return [path_of(self.population, i) for i in range(len(self.population.nodes))]
+
+    def run(
+        self,
+        on_generation: Callable[["KBGA", bool], bool] | None = None,
+    ) -> NDArray[np.float64] | None:
+        """Evolve until a stop criterion holds; the best feasible path, or None.
+
+        Parameters
+        ----------
+        on_generation : callable, optional
+            Called with this object and whether the best path improved, for the first population
+            and after each generation. Evolution ends when it returns False.
+        """
+        going = on_generation is None or on_generation(self, self.best_path is not None)
+        while going and self.generation < self.settings.max_generations and not self.stagnant:
+            improved = self.step()
+            going = on_generation is None or on_generation(self, improved)
+        return self.best_path

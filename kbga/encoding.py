@@ -1,0 +1,169 @@
+"""The lattice and the chromosomes (paper II-A): a node is one integer, its lattice number.
+
+Start and goal keep their natural coordinates; only the nodes between them lie on the lattice. A
+population is a set of flat arrays; what evaluation found out about a segment is stored beside the
+chromosome, and edits keep both in step.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+
+class Lattice(NamedTuple):
+    """A grid over the workspace whose crossings are numbered row by row from its lower left.
+
+    x0, y0 : float, the crossing number 0, metres.
+    dx, dy : float, spacing of the lines, metres.
+    side : int, crossings in a row and in a column.
+    """
+
+    x0: float
+    y0: float
+    dx: float
+    dy: float
+    side: int
+
+
+def make_lattice(bounds: tuple[float, float, float, float], resolution: int) -> Lattice:
+    """Lattice of ``resolution`` units per side over a workspace's bounds (xmin, ymin, xmax, ymax)."""
+    xmin, ymin, xmax, ymax = bounds
+    return Lattice(
+        xmin, ymin, (xmax - xmin) / resolution, (ymax - ymin) / resolution, resolution + 1
+    )
+
+
+@njit(cache=True)
+def node_x(lattice: Lattice, node: int) -> float:
+    """Coordinate x of a lattice number, metres."""
+    return lattice.x0 + lattice.dx * (node % lattice.side)
+
+
+@njit(cache=True)
+def node_y(lattice: Lattice, node: int) -> float:
+    """Coordinate y of a lattice number, metres."""
+    return lattice.y0 + lattice.dy * (node // lattice.side)
+
+
+MAX_HITS = 8
+"""Obstacle groups remembered per segment. A repair takes one of them; a segment that hits more is
+cut in two soon, and the halves are evaluated anew."""
+
+
+NODE = np.dtype(
+    [
+        ("gene", np.int64),
+        ("x", np.float64),
+        ("y", np.float64),
+        ("length", np.float64),
+        ("depth", np.float64),
+        ("hit_count", np.int64),
+        ("hits", np.int64, (MAX_HITS,)),
+        ("settled", np.int64),
+        ("needed", np.int64),
+    ],
+    align=True,
+)
+"""A node of a chromosome, and what is known of the segment that leaves it.
+
+gene : lattice number; START and GOAL for the ends.
+x, y : metres.
+length : d_i of the segment, metres.
+depth : beta_i of the segment, metres; 0 if and only if it is feasible.
+hits, hit_count : numbers of the obstacle groups that it intersects, and how many are noted.
+settled : 1 if improvement found no better place between the same two neighbours.
+needed : 1 if deletion found no benefit between the same two neighbours.
+
+A record and not seven arrays: edits move nodes with all that is known of them, in one copy.
+"""
+
+CHROMOSOME = np.dtype(
+    [("size", np.int64), ("cost", np.float64), ("infeasible", np.int64)], align=True
+)
+"""A chromosome as a whole.
+
+size : intermediate nodes.
+cost : Eq. (1), metres.
+infeasible : number of infeasible segments.
+"""
+
+START, GOAL = -1, -2
+
+
+class Population(NamedTuple):
+    """P chromosomes of at most M nodes, start and goal included.
+
+    Column 0 holds the start, columns 1 to ``size`` the intermediate nodes, column ``size + 1``
+    the goal. Segment k runs from column k to column k + 1.
+
+    nodes : (P, M) of NODE.
+    chromosomes : (P,) of CHROMOSOME.
+    """
+
+    nodes: np.ndarray
+    chromosomes: np.ndarray
+
+
+def empty_population(count: int, max_nodes: int) -> Population:
+    """Room for ``count`` chromosomes of at most ``max_nodes`` nodes."""
+    return Population(np.zeros((count, max_nodes), NODE), np.zeros(count, CHROMOSOME))
+
+
+def path_of(population: Population, i: int) -> NDArray[np.float64]:
+    """Chromosome i as a path (n, 2), metres."""
+    nodes = population.nodes[i, : population.chromosomes["size"][i] + 2]
+    return np.column_stack([nodes["x"], nodes["y"]])
+
+
+@njit(cache=True)
+def copy_chromosome(source: Population, i: int, target: Population, j: int) -> None:
+    """Copy chromosome i of one population to place j of another, with all that is known of it."""
+    nodes, copies = source.nodes, target.nodes
+    for k in range(source.chromosomes[i].size + 2):
+        copies[j, k] = nodes[i, k]
+    target.chromosomes[j] = source.chromosomes[i]
+
+
+@njit(cache=True)
+def set_node(nodes: np.ndarray, i: int, k: int, gene: int, lattice: Lattice) -> None:
+    """Put a lattice node into column k; the segments that touch it are to be evaluated after."""
+    nodes[i, k].gene = gene
+    nodes[i, k].x = node_x(lattice, gene)
+    nodes[i, k].y = node_y(lattice, gene)
+
+
+@njit(cache=True)
+def forget(nodes: np.ndarray, i: int, first: int, last: int) -> None:
+    """Note that columns ``first`` to ``last`` have a new place or neighbour: try them again."""
+    for k in range(first, last + 1):
+        nodes[i, k].settled = 0
+        nodes[i, k].needed = 0
+
+
+@njit(cache=True)
+def open_column(population: Population, i: int, k: int) -> None:
+    """Make room for a new node at column k; the rest moves up by one."""
+    nodes = population.nodes
+    for m in range(population.chromosomes[i].size + 1, k - 1, -1):
+        nodes[i, m + 1] = nodes[i, m]
+    population.chromosomes[i].size += 1
+
+
+@njit(cache=True)
+def close_columns(population: Population, i: int, first: int, count: int) -> None:
+    """Remove ``count`` nodes from column ``first`` on; the rest moves down."""
+    nodes = population.nodes
+    for m in range(first + count, population.chromosomes[i].size + 2):
+        nodes[i, m - count] = nodes[i, m]
+    population.chromosomes[i].size -= count
+
+
+@njit(cache=True)
+def contains(nodes: np.ndarray, i: int, size: int, gene: int) -> bool:
+    """Whether a lattice node is one of the ``size`` intermediate nodes of chromosome i."""
+    for k in range(1, size + 1):
+        if nodes[i, k].gene == gene:
+            return True
+    return False

@@ -1,0 +1,129 @@
+"""The generations of KBGA (paper II-D, Fig. 5): select, reproduce, replace with elitism."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from kbga.encoding import GOAL, START, Population, contains, copy_chromosome, forget, set_node
+from kbga.evaluation import evaluate_segment, sum_up
+from kbga.operators.crossover import crossover
+from kbga.operators.deletion import delete
+from kbga.operators.improvement import improve
+from kbga.operators.mutation import mutate
+from kbga.operators.repair import repair
+from kbga.problem import Problem
+from kbga.selection import keep_elite, tournament
+
+
+class Rates(NamedTuple):
+    """The settings that the compiled code reads; see :class:`kbga.settings.KBGASettings`."""
+
+    crossover: float
+    mutation: float
+    repair: float
+    deletion: float
+    improvement: float
+    tournament_size: int
+    penalty: float
+    repair_candidates: int
+    improvement_radius: int
+
+
+@njit(cache=True)
+def first_population(
+    population: Population,
+    start: np.ndarray,
+    goal: np.ndarray,
+    initial_nodes: int,
+    problem: Problem,
+    penalty: float,
+    rng: np.random.Generator,
+    counter: np.ndarray,
+) -> None:
+    """Fill a population with random chromosomes and evaluate them.
+
+    Each has 1 to ``initial_nodes`` different nodes, drawn from the whole lattice.
+    """
+    nodes = population.nodes
+    count = problem.lattice.side * problem.lattice.side
+    most = min(initial_nodes, nodes.shape[1] - 2, count)
+    for i in range(nodes.shape[0]):
+        size = 1 + int(rng.random() * most) if most > 0 else 0
+        nodes[i, 0].gene, nodes[i, 0].x, nodes[i, 0].y = START, start[0], start[1]
+        for k in range(1, size + 1):
+            gene = int(rng.random() * count)
+            while contains(nodes, i, k - 1, gene):
+                gene = (gene + 1) % count
+            set_node(nodes, i, k, gene, problem.lattice)
+        nodes[i, size + 1].gene = GOAL
+        nodes[i, size + 1].x, nodes[i, size + 1].y = goal[0], goal[1]
+        population.chromosomes[i].size = size
+        forget(nodes, i, 0, size + 1)
+        for k in range(size + 1):
+            evaluate_segment(nodes, i, k, problem.arrays, counter)
+        sum_up(population, i, penalty)
+
+
+@njit(cache=True)
+def next_generation(
+    parents: Population,
+    children: Population,
+    scratch: np.ndarray,
+    problem: Problem,
+    rates: Rates,
+    rng: np.random.Generator,
+    counter: np.ndarray,
+) -> None:
+    """Fill ``children`` with the offspring of ``parents``, two at a time, and keep the elite."""
+    count = parents.chromosomes.size
+    for c in range(0, count, 2):
+        i = tournament(parents.chromosomes, rates.tournament_size, rng)
+        j = tournament(parents.chromosomes, rates.tournament_size, rng)
+        d = min(c + 1, count - 1)  # an odd population has a last child without a twin
+        crossed = rng.random() < rates.crossover and crossover(
+            parents, i, j, children, c, d, problem, rates.penalty, rng, counter
+        )
+        if not crossed:
+            copy_chromosome(parents, j, children, d)
+            copy_chromosome(parents, i, children, c)
+        for child in range(c, d + 1):
+            _transform(children, child, scratch, problem, rates, rng, counter)
+    keep_elite(parents, children)
+
+
+@njit(cache=True)
+def _transform(
+    children: Population,
+    i: int,
+    scratch: np.ndarray,
+    problem: Problem,
+    rates: Rates,
+    rng: np.random.Generator,
+    counter: np.ndarray,
+) -> None:
+    """Apply mutation and the specialised operators to a child, by probability and heuristic."""
+    if rng.random() < rates.mutation:
+        mutate(children, i, problem, rates.penalty, rng, counter)
+    if children.chromosomes[i].infeasible > 0 and rng.random() < rates.repair:
+        repair(
+            children, i, scratch, problem, rates.penalty, rates.repair_candidates, rng, counter
+        )
+    if rng.random() < rates.deletion:
+        delete(children, i, scratch, problem, rates.penalty, rng, counter)
+    if children.chromosomes[i].infeasible == 0 and rng.random() < rates.improvement:
+        improve(
+            children, i, scratch, problem, rates.penalty, rates.improvement_radius, rng, counter
+        )
+
+
+@njit(cache=True)
+def best_feasible(population: Population) -> int:
+    """Index of the cheapest feasible chromosome, or -1."""
+    best = -1
+    cost = np.inf
+    for i in range(population.chromosomes.size):
+        if population.chromosomes[i].infeasible == 0 and population.chromosomes[i].cost < cost:
+            best = i
+            cost = population.chromosomes[i].cost
+    return best

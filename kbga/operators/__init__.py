@@ -1,0 +1,1 @@
+"""The five operators of paper II-C, one file each."""

@@ -1,0 +1,55 @@
+"""Deletion (paper II-C): leave out a random node if that is beneficial."""
+
+import numpy as np
+from numba import njit
+
+from kbga.encoding import Population, close_columns, forget
+from kbga.evaluation import evaluate_segment, sum_up
+from kbga.problem import Problem
+
+
+@njit(cache=True)
+def _random_node(nodes: np.ndarray, i: int, size: int, rng: np.random.Generator) -> int:
+    """Column of a random intermediate node that is not known to be needed; 0 if there is none."""
+    chosen = 0
+    count = 0
+    for k in range(1, size + 1):
+        if not nodes[i, k].needed:
+            count += 1
+            if rng.random() * count < 1.0:
+                chosen = k
+    return chosen
+
+
+@njit(cache=True)
+def delete(
+    population: Population,
+    i: int,
+    scratch: np.ndarray,
+    problem: Problem,
+    penalty: float,
+    rng: np.random.Generator,
+    counter: np.ndarray,
+) -> bool:
+    """Delete a random node of chromosome i if that lowers its cost; whether it was done.
+
+    Turning infeasible into feasible always lowers the cost: the new segment is no longer than the
+    two that it replaces. For feasible and infeasible paths alike.
+    """
+    nodes = population.nodes
+    k = _random_node(nodes, i, population.chromosomes[i].size, rng)
+    if k == 0:
+        return False
+    scratch[0, 0] = nodes[i, k - 1]
+    scratch[0, 1] = nodes[i, k + 1]
+    evaluate_segment(scratch, 0, 0, problem.arrays, counter)
+    before = nodes[i, k - 1].length + nodes[i, k].length
+    before += (nodes[i, k - 1].depth + nodes[i, k].depth) * penalty
+    if scratch[0, 0].length + scratch[0, 0].depth * penalty >= before:
+        nodes[i, k].needed = 1
+        return False
+    nodes[i, k - 1] = scratch[0, 0]
+    close_columns(population, i, k, 1)
+    forget(nodes, i, k - 1, k)
+    sum_up(population, i, penalty)
+    return True

@@ -1,0 +1,114 @@
+"""Improvement (paper II-C): move a node of a feasible path to a better place nearby."""
+
+import numpy as np
+from numba import njit
+
+from kbga.encoding import Population, contains, forget, set_node
+from kbga.evaluation import evaluate_segment, sum_up
+from kbga.operators.detour import detour_length
+from kbga.problem import Problem
+
+# The eight neighbours of a node, by columns and rows.
+_COLUMNS = (1, 1, 0, -1, -1, -1, 0, 1)
+_ROWS = (0, 1, 1, 1, 0, -1, -1, -1)
+
+# A gain below this is rounding, and a search that followed it need not end. Metres.
+_LEAST_GAIN = 1e-9
+
+
+@njit(cache=True)
+def _move(
+    nodes: np.ndarray,
+    i: int,
+    size: int,
+    k: int,
+    step: int,
+    scratch: np.ndarray,
+    problem: Problem,
+    counter: np.ndarray,
+) -> bool:
+    """Move node k by ``step`` lattice units to the neighbour that shortens the path most.
+
+    Whether it moved. Lengths are compared first, so that only a neighbour that would be better
+    than the best so far is tested for collision.
+    """
+    side = problem.lattice.side
+    column, row = nodes[i, k].gene % side, nodes[i, k].gene // side
+    scratch[0, 0] = nodes[i, k - 1]
+    scratch[0, 2] = nodes[i, k + 1]
+    best = nodes[i, k - 1].length + nodes[i, k].length - _LEAST_GAIN
+    moved = False
+    for neighbour in range(8):
+        new_column = column + step * _COLUMNS[neighbour]
+        new_row = row + step * _ROWS[neighbour]
+        if not (0 <= new_column < side and 0 <= new_row < side):
+            continue
+        gene = new_row * side + new_column
+        set_node(scratch, 0, 1, gene, problem.lattice)
+        length = detour_length(scratch)
+        if length >= best or contains(nodes, i, size, gene):
+            continue
+        evaluate_segment(scratch, 0, 0, problem.arrays, counter)
+        if scratch[0, 0].depth > 0.0:
+            continue
+        evaluate_segment(scratch, 0, 1, problem.arrays, counter)
+        if scratch[0, 1].depth > 0.0:
+            continue
+        best = length
+        moved = True
+        scratch[1, 0] = scratch[0, 0]
+        scratch[1, 1] = scratch[0, 1]
+    if moved:
+        nodes[i, k - 1] = scratch[1, 0]
+        nodes[i, k] = scratch[1, 1]
+    return moved
+
+
+@njit(cache=True)
+def _random_node(nodes: np.ndarray, i: int, size: int, rng: np.random.Generator) -> int:
+    """Column of a random intermediate node that is not known to be settled; 0 if there is none."""
+    chosen = 0
+    count = 0
+    for k in range(1, size + 1):
+        if not nodes[i, k].settled:
+            count += 1
+            if rng.random() * count < 1.0:
+                chosen = k
+    return chosen
+
+
+@njit(cache=True)
+def improve(
+    population: Population,
+    i: int,
+    scratch: np.ndarray,
+    problem: Problem,
+    penalty: float,
+    radius: int,
+    rng: np.random.Generator,
+    counter: np.ndarray,
+) -> bool:
+    """Improve a random node of chromosome i if that is feasible; whether the node moved.
+
+    A pattern search: steps of ``radius`` lattice units while they help, then half that size, down
+    to one unit. A node that it has left alone is settled until a neighbour changes.
+    """
+    size = population.chromosomes[i].size
+    if population.chromosomes[i].infeasible > 0:
+        return False
+    nodes = population.nodes
+    k = _random_node(nodes, i, size, rng)
+    if k == 0:
+        return False
+    step = radius
+    moved = False
+    while step > 0:
+        if _move(nodes, i, size, k, step, scratch, problem, counter):
+            moved = True
+        else:
+            step //= 2
+    if moved:
+        forget(nodes, i, k - 1, k + 1)
+        sum_up(population, i, penalty)
+    nodes[i, k].settled = 1
+    return moved

@@ -1,0 +1,38 @@
+"""Mutation (paper II-C): replace a random node by one that is not in the path."""
+
+import numpy as np
+from numba import njit
+
+from kbga.encoding import Population, contains, forget, set_node
+from kbga.evaluation import evaluate_segment, sum_up
+from kbga.problem import Problem
+
+
+@njit(cache=True)
+def mutate(
+    population: Population,
+    i: int,
+    problem: Problem,
+    penalty: float,
+    rng: np.random.Generator,
+    counter: np.ndarray,
+) -> bool:
+    """Replace a random node of chromosome i; whether it had one.
+
+    The result need not be better: mutation keeps the population diverse.
+    """
+    nodes = population.nodes
+    size = population.chromosomes[i].size
+    if size == 0:
+        return False
+    k = 1 + int(rng.random() * size)
+    count = problem.lattice.side * problem.lattice.side
+    gene = int(rng.random() * count)
+    while contains(nodes, i, size, gene):
+        gene = (gene + 1) % count
+    set_node(nodes, i, k, gene, problem.lattice)
+    forget(nodes, i, k - 1, k + 1)
+    evaluate_segment(nodes, i, k - 1, problem.arrays, counter)
+    evaluate_segment(nodes, i, k, problem.arrays, counter)
+    sum_up(population, i, penalty)
+    return True

@@ -1,0 +1,30 @@
+"""Tournament selection and elitism (paper II-D)."""
+
+import numpy as np
+from numba import njit
+
+from kbga.encoding import Population, copy_chromosome
+
+
+@njit(cache=True)
+def tournament(chromosomes: np.ndarray, size: int, rng: np.random.Generator) -> int:
+    """Index of the cheapest of ``size`` chromosomes drawn at random."""
+    winner = int(rng.random() * chromosomes.size)
+    for _ in range(size - 1):
+        rival = int(rng.random() * chromosomes.size)
+        if chromosomes[rival].cost < chromosomes[winner].cost:
+            winner = rival
+    return winner
+
+
+@njit(cache=True)
+def keep_elite(parents: Population, children: Population) -> None:
+    """Replace the worst child by the best parent, so that the elite is not lost."""
+    best = 0
+    worst = 0
+    for i in range(parents.chromosomes.size):
+        if parents.chromosomes[i].cost < parents.chromosomes[best].cost:
+            best = i
+        if children.chromosomes[i].cost > children.chromosomes[worst].cost:
+            worst = i
+    copy_chromosome(parents, best, children, worst)

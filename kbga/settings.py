@@ -1,0 +1,66 @@
+"""The parameters of KBGA: those of the paper, and those that the paper leaves open."""
+
+from dataclasses import dataclass
+from math import isfinite
+
+
+@dataclass(frozen=True, slots=True)
+class KBGASettings:
+    """Parameters of the algorithm. Those marked (ours) are choices where the paper is silent.
+
+    population_size : individuals, at least 2 (paper III: 50).
+    resolution : lattice units per side of the workspace (paper III: 100 x 100); nodes lie on the
+        crossings of the grid lines, so there are (resolution + 1) ** 2 of them.
+    max_nodes : N_max, the longest chromosome, start and goal included (ours: 48, three times the
+        bends of the longest path in the catalogue).
+    initial_nodes : most intermediate nodes of a chromosome in the first population (ours).
+    crossover_probability : per pair of parents (paper III: 0.9).
+    mutation_probability : per chromosome (paper III: 0.2).
+    repair_probability : per infeasible chromosome (paper III: 0.9).
+    deletion_probability : per chromosome (paper III: 0.9).
+    improvement_probability : per feasible chromosome (paper III: 0.9).
+    tournament_size : individuals that compete to be a parent (ours).
+    penalty : the constant C of Eq. (1), metres of path per metre of collision depth (ours).
+    repair_candidates : nodes tried around the intersected obstacle in one repair (ours).
+    improvement_radius : longest step of the local search around a node, lattice units (ours).
+    max_generations : first stop criterion (ours; the paper's plain GA ran beyond 444).
+    stagnation : second stop criterion, generations without a better solution. It counts only
+        once there is a feasible path (ours: before that, more generations are all that helps).
+    """
+
+    population_size: int = 50
+    resolution: int = 100
+    max_nodes: int = 48
+    initial_nodes: int = 8
+    crossover_probability: float = 0.9
+    mutation_probability: float = 0.2
+    repair_probability: float = 0.9
+    deletion_probability: float = 0.9
+    improvement_probability: float = 0.9
+    tournament_size: int = 2
+    penalty: float = 10.0
+    repair_candidates: int = 12
+    improvement_radius: int = 8
+    max_generations: int = 500
+    stagnation: int = 30
+
+    def __post_init__(self) -> None:
+        for name, low in (
+            ("population_size", 2),
+            ("resolution", 2),
+            ("max_nodes", 2),
+            ("initial_nodes", 1),
+            ("tournament_size", 1),
+            ("repair_candidates", 1),
+            ("improvement_radius", 1),
+            ("max_generations", 1),
+            ("stagnation", 1),
+        ):
+            if getattr(self, name) < low:
+                raise ValueError(f"{name} is {getattr(self, name)}; it must be {low} or more")
+        for operator in ("crossover", "mutation", "repair", "deletion", "improvement"):
+            name = f"{operator}_probability"
+            if not 0.0 <= getattr(self, name) <= 1.0:
+                raise ValueError(f"{name} is {getattr(self, name)}; it must lie in [0, 1]")
+        if not (isfinite(self.penalty) and self.penalty >= 0.0):
+            raise ValueError(f"penalty is {self.penalty}; it must be 0 or more, and finite")

@@ -1,0 +1,313 @@
+"""The command ``kbga-bench``: parses, calls, prints.
+
+Floors above the planner interface are imported inside the commands: pandas and matplotlib take
+longer to import than ``list`` takes to answer.
+"""
+
+import json
+import sys
+import warnings
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from suite.errors import KbgaBenchError
+
+app = typer.Typer(
+    name="kbga-bench",
+    help="Benchmark suite for 2D robot path planning: KBGA, OMPL's planners, a plain GA and an "
+    "exact solver on shared scenes, judged by one referee.",
+    epilog="Start with: kbga-bench list scenes; kbga-bench plan zigzag --planner kbga --seed 1",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+    rich_markup_mode="markdown",
+)
+
+
+class What(StrEnum):
+    """What can be listed."""
+
+    SCENES = "scenes"
+    PLANNERS = "planners"
+    MATRICES = "matrices"
+
+
+class ListFormat(StrEnum):
+    """How a list is printed."""
+
+    TABLE = "table"
+    JSON = "json"
+
+
+class TextFormat(StrEnum):
+    """How a single result is printed."""
+
+    TEXT = "text"
+    JSON = "json"
+
+
+class TableFormat(StrEnum):
+    """How tables are printed; see :class:`suite.report.table.Format`."""
+
+    TABLE = "table"
+    CSV = "csv"
+    MARKDOWN = "markdown"
+    LATEX = "latex"
+
+
+class ExportFormat(StrEnum):
+    """Files that rows can be exported to."""
+
+    PARQUET = "parquet"
+    CSV = "csv"
+
+
+SceneArgument = Annotated[
+    str, typer.Argument(metavar="SCENE", help="Name in the catalogue, or path of a scene file.")
+]
+StoreArgument = Annotated[Path, typer.Argument(metavar="STORE", help="Result store (SQLite).")]
+
+
+@app.command("list")
+def list_command(
+    what: Annotated[What, typer.Argument(help="What to list.")],
+    style: Annotated[ListFormat, typer.Option("--format", help="For people or programs.")] = (
+        ListFormat.TABLE
+    ),
+) -> None:
+    """List what there is: scenes, planners or matrices.
+
+    Example: kbga-bench list planners --format json
+    """
+    from suite import listing
+
+    rows = {
+        What.SCENES: listing.scenes_listing,
+        What.PLANNERS: listing.planners_listing,
+        What.MATRICES: listing.matrices_listing,
+    }[what]()
+    if style is ListFormat.JSON:
+        _print_json(rows)
+    else:
+        _print_rows(rows)
+
+
+@app.command()
+def exact(
+    scene: SceneArgument,
+    query: Annotated[str | None, typer.Option(help="Name of the query; default: the first.")] = (
+        None
+    ),
+    style: Annotated[TextFormat, typer.Option("--format", help="For people or programs.")] = (
+        TextFormat.TEXT
+    ),
+) -> None:
+    """Compute the exact shortest path of a scene, or say that there is none.
+
+    Example: kbga-bench exact maze --format json
+    """
+    from suite.harness.single import exact_as_data, exact_as_text
+
+    found = exact_as_data(scene, query)
+    if style is TextFormat.JSON:
+        _print_json(found)
+    else:
+        typer.echo(exact_as_text(found))
+
+
+@app.command()
+def plan(
+    scene: SceneArgument,
+    planner: Annotated[str, typer.Option(help="Name of the planner; see `list planners`.")],
+    seed: Annotated[int, typer.Option(min=0, help="Of the random stream.")] = 0,
+    query: Annotated[str | None, typer.Option(help="Name of the query; default: the first.")] = (
+        None
+    ),
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="A setting of the planner; repeatable."),
+    ] = None,
+    wall_s: Annotated[float | None, typer.Option(help="Budget: seconds of wall time.")] = None,
+    generations: Annotated[
+        int | None, typer.Option(help="Budget: generations or iterations.")
+    ] = None,
+    checks: Annotated[int | None, typer.Option(help="Budget: collision checks.")] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw the run: .png, .pdf or .svg.")
+    ] = None,
+    style: Annotated[TextFormat, typer.Option("--format", help="For people or programs.")] = (
+        TextFormat.TEXT
+    ),
+) -> None:
+    """Run one planner once, here and now, and say what came of it.
+
+    Exit code 0 if it found a path or proved that there is none, 1 otherwise.
+
+    Example: kbga-bench plan zigzag --planner kbga --seed 7 --generations 60 --plot zigzag.png
+    """
+    from suite.harness.cell import run_cell
+    from suite.harness.single import as_data, as_text, cell_for, parse_settings, succeeded
+    from suite.planner import Budget, Recorder
+
+    cell = cell_for(
+        scene,
+        planner,
+        seed=seed,
+        query=query,
+        settings=parse_settings(settings or []),
+        budget=Budget(wall_s, generations, checks),
+    )
+    recorder = Recorder(keep_snapshots=plot is not None)
+    if plot is None:
+        record = run_cell(cell, recorder=recorder)
+    else:
+        from suite.report.figures import check_figure_file
+        from suite.report.run_figure import draw_record
+
+        check_figure_file(plot)
+        record = run_cell(cell, recorder=recorder)
+        draw_record(record, recorder.snapshots, plot)
+    if style is TextFormat.JSON:
+        _print_json(as_data(record))
+    else:
+        typer.echo(as_text(record))
+    raise typer.Exit(0 if succeeded(record) else 1)
+
+
+@app.command()
+def run(
+    matrix: Annotated[
+        str, typer.Argument(metavar="MATRIX", help="Name in the catalogue, or path of a file.")
+    ],
+    store: Annotated[Path, typer.Option(metavar="FILE", help="Result store; made if missing.")],
+    jobs: Annotated[
+        int | None, typer.Option(min=1, help="Runs at a time; default: one per processor.")
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Only the first two seeds.")] = False,
+) -> None:
+    """Run what a store still lacks of a matrix, each run in a process of its own.
+
+    It can be stopped at any time and started again: only the runs in flight are lost.
+
+    Example: kbga-bench run paper-static --store out/paper.db --jobs 2
+    """
+    from suite.harness.display import Display
+    from suite.harness.matrix import load_matrix
+    from suite.harness.run import run_matrix
+    from suite.store import open_store
+
+    wanted = load_matrix(matrix)
+    with open_store(store) as opened:
+        try:
+            with Display(wanted.name) as display:
+                end = run_matrix(wanted, opened, jobs=jobs, quick=quick, on_progress=display)
+        except KeyboardInterrupt:
+            typer.echo(
+                "Stopped. All finished runs are kept; to go on, give the same command again.",
+                err=True,
+            )
+            raise typer.Exit(130) from None
+    typer.echo(end.summary())
+
+
+@app.command()
+def tables(
+    store: StoreArgument,
+    style: Annotated[TableFormat, typer.Option("--format", help="How to print them.")] = (
+        TableFormat.TABLE
+    ),
+    output: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write a file for each table instead.")
+    ] = None,
+) -> None:
+    """Print the tables of a store: a summary, and the paper's figures beside ours.
+
+    Example: kbga-bench tables out/paper.db --format markdown
+    """
+    from suite.report.results import write_tables
+    from suite.report.table import Format, render
+    from suite.report.tables import all_tables
+    from suite.store import read_runs
+
+    found = all_tables(read_runs(store))
+    if output is not None:
+        for path in write_tables(found, output, Format(style)):
+            typer.echo(path)
+        return
+    typer.echo("\n".join(render(table, Format(style)) for table in found), nl=False)
+
+
+@app.command()
+def export(
+    store: StoreArgument,
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where to; made if missing.")],
+    to: Annotated[ExportFormat, typer.Option(help="Kind of files.")] = ExportFormat.PARQUET,
+) -> None:
+    """Export the rows of a store: runs, events, traces and paths, a file each.
+
+    Example: kbga-bench export out/paper.db rows --to csv
+    """
+    from suite.report.export import export_rows
+
+    for path in export_rows(store, directory, to.value):
+        typer.echo(path)
+
+
+@app.command()
+def results(
+    store: StoreArgument,
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where to; made if missing.")],
+) -> None:
+    """Make a results folder: tables, rows, a figure for each scene, and the manifest.
+
+    Example: kbga-bench results out/paper.db results/paper-static
+    """
+    from suite.report.results import write_results
+
+    for path in write_results(store, directory):
+        typer.echo(path)
+
+
+def main() -> None:
+    """Run the command; errors that users can mend are one line and exit code 2."""
+    warnings.showwarning = _show_warning
+    try:
+        app()
+    except KbgaBenchError as error:
+        typer.echo(f"kbga-bench: error: {_one_line(error)}", err=True)
+        sys.exit(2)
+
+
+def _one_line(text: object) -> str:
+    return " ".join(str(text).split())
+
+
+def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    typer.echo(f"kbga-bench: warning: {_one_line(message)}", err=True)
+
+
+def _print_json(value: Any) -> None:
+    typer.echo(json.dumps(value, indent=2))
+
+
+def _print_rows(rows: list[dict[str, Any]]) -> None:
+    from tabulate import tabulate
+
+    headers = list(rows[0]) if rows else []
+    texts = [[_as_text(value) for value in row.values()] for row in rows]
+    typer.echo(tabulate(texts, headers=headers, disable_numparse=True))
+
+
+def _as_text(value: Any) -> str:
+    if isinstance(value, list):
+        return ", ".join(map(str, value))
+    if isinstance(value, float):
+        return f"{value:.3f}"
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return str(value)

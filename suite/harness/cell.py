@@ -1,0 +1,228 @@
+"""One run, in this process: warm up, start the clock, plan, stop the clock, ask the referee."""
+
+import traceback
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from datetime import UTC, datetime
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from suite.errors import ContractError, SceneError
+from suite.exact import shortest_path
+from suite.geometry.tolerances import COST_CLAIM_RELATIVE
+from suite.harness.machine import host_name, load_average
+from suite.planner import Plan, Planner, PlanStatus, Recorder
+from suite.plugins import load_planner, make_settings
+from suite.record import Cell, RunRecord
+from suite.referee import Referee
+from suite.scene import Query, Scene, scene_fingerprint
+from suite.scenes.catalogue import load_scene
+
+TRACEBACK_LINES = 12
+"""Enough for the exception and the frames of the planner that raised it."""
+
+CLAIMABLE = (PlanStatus.SOLVED, PlanStatus.INFEASIBLE, PlanStatus.EXHAUSTED)
+
+CONTENTION_FACTOR = 1.1
+CONTENTION_FLOOR_S = 0.002
+"""Below this, the resolution of the CPU clock decides, not the load of the machine."""
+
+
+def run_cell(
+    cell: Cell,
+    *,
+    recorder: Recorder | None = None,
+    before_plan: Callable[[], None] = lambda: None,
+) -> RunRecord:
+    """Run one cell here and now, and judge what comes of it.
+
+    Parameters
+    ----------
+    cell : Cell
+    recorder : Recorder, optional
+        To be read by the caller afterwards, for snapshots.
+    before_plan : callable
+        Called when everything is ready, just before the clock starts.
+
+    Returns
+    -------
+    RunRecord
+        Always: what a planner raises or returns by mistake is a row.
+    """
+    blank = RunRecord(
+        cell,
+        PlanStatus.ERROR,
+        host=host_name(),
+        load=load_average(),
+        started_at=datetime.now(UTC).isoformat(timespec="seconds"),
+    )
+    try:
+        return _run(cell, blank, recorder or Recorder(), before_plan)
+    except MemoryError:
+        return replace(blank, status=PlanStatus.OUT_OF_MEMORY, reason=_last_lines())
+    except (Exception, SystemExit):
+        # Other people's code: whatever it raises is an outcome of its run, and no reason to stop.
+        return replace(blank, reason=_last_lines())
+
+
+def stream(cell: Cell) -> np.random.Generator:
+    """The random stream of a cell: another one for each seed, scene, query and variant."""
+    name = f"{cell.scene}/{cell.query}/{cell.variant}"
+    return np.random.default_rng([cell.seed, zlib.crc32(name.encode())])
+
+
+@lru_cache(maxsize=64)
+def prepared_scene(source: str) -> Scene:
+    """A scene with its arrangement computed; kept, so that a warmed process hands it on."""
+    scene = load_scene(source)
+    # Touching the cached property builds it.
+    _ = scene.arrangement
+    return scene
+
+
+@lru_cache(maxsize=64)
+def referee(source: str) -> Referee:
+    """The referee of a scene."""
+    return Referee(prepared_scene(source))
+
+
+@lru_cache(maxsize=256)
+def exact_optimum(source: str, query: str) -> float | None:
+    """Length of the exact shortest path of a query, metres; None if there is no path."""
+    scene = prepared_scene(source)
+    stored = scene.stored_optimum(scene.query(query))
+    if stored is not None:
+        return stored
+    length = shortest_path(scene, scene.query(query)).length
+    return length if np.isfinite(length) else None
+
+
+@lru_cache(maxsize=256)
+def planner_class(name: str) -> type[Planner]:
+    """The class of a plugin; kept, because finding it reads the metadata of every package."""
+    return load_planner(name)
+
+
+def build_planner(name: str, settings: Mapping[str, Any]) -> Planner:
+    """A planner of that plugin name with those settings."""
+    found = planner_class(name)
+    return found(make_settings(found, settings))
+
+
+def _run(
+    cell: Cell, blank: RunRecord, recorder: Recorder, before_plan: Callable[[], None]
+) -> RunRecord:
+    scene = prepared_scene(cell.scene_source)
+    query = scene.query(cell.query)
+    if scene_fingerprint(scene, query) != cell.scene_hash:
+        raise SceneError(f"{cell.scene_source}: the file changed after the matrix was read.")
+    planner = build_planner(cell.planner, cell.settings)
+    planner.warm_up()
+    refusal = planner.refuse(scene, query, cell.budget)
+    if refusal is not None:
+        return replace(blank, status=PlanStatus.REFUSED, reason=str(refusal))
+    rng = stream(cell)
+    before_plan()
+    recorder.start_clock()
+    plan = planner.plan(scene, query, cell.budget, rng, recorder)
+    # The one clock stops here: nothing may come between these lines.
+    wall_s, cpu_s = recorder.wall_s(), recorder.cpu_s()
+    measured = replace(
+        blank,
+        wall_s=wall_s,
+        cpu_s=cpu_s,
+        contended=wall_s > CONTENTION_FACTOR * cpu_s + CONTENTION_FLOOR_S,
+        improvements=tuple(recorder.improvements),
+        trace=tuple(recorder.trace),
+        optimum=exact_optimum(cell.scene_source, cell.query),
+    )
+    try:
+        return _judged(query, _with_plan(measured, _checked(plan)), plan)
+    except ContractError as error:
+        return replace(measured, reason=str(error))
+
+
+def _checked(plan: Any) -> Plan:
+    if not isinstance(plan, Plan):
+        raise ContractError(f"plan returned {type(plan).__name__}. It must return a Plan.")
+    if plan.status not in CLAIMABLE:
+        allowed = ", ".join(CLAIMABLE)
+        raise ContractError(f"plan returned the status {plan.status!r}. It may claim {allowed}.")
+    return plan
+
+
+def _with_plan(record: RunRecord, plan: Plan) -> RunRecord:
+    """The record with what the planner says of its run; nothing of it is judged yet."""
+    best = record.improvements[-1] if record.improvements else None
+    return replace(
+        record,
+        status=PlanStatus(plan.status),
+        claimed_cost=_number(plan.claimed_cost),
+        generations=_count(plan.generations),
+        generation_of_best=_count(
+            plan.generation_of_best, None if best is None else best.generation
+        ),
+        checks=_count(plan.checks),
+        details={str(k): float(v) for k, v in plan.details.items()},
+        path=_as_path(plan.path),
+        # A planner that reports nothing found its best when it ended.
+        time_to_best_s=record.wall_s if best is None else best.wall_s,
+        cpu_to_best_s=record.cpu_s if best is None else best.cpu_s,
+    )
+
+
+def _judged(query: Query, record: RunRecord, plan: Plan) -> RunRecord:
+    if record.status is PlanStatus.INFEASIBLE and record.optimum is not None:
+        reason = f"claims that there is no path; the shortest has {record.optimum:.6g} m."
+        return replace(record, status=PlanStatus.INVALID, reason=reason)
+    if record.status is not PlanStatus.SOLVED:
+        return replace(record, time_to_best_s=None, cpu_to_best_s=None)
+    if plan.path is None:
+        raise ContractError("plan says 'solved' and returns no path.")
+    verdict = referee(record.cell.scene_source).judge(query, plan.path)
+    if verdict.length is None:
+        return replace(record, status=PlanStatus.INVALID, reason=verdict.reason)
+    cost = verdict.length
+    claim = record.claimed_cost
+    return replace(
+        record,
+        cost=cost,
+        clearance=verdict.clearance,
+        segments=verdict.segments,
+        turning=verdict.turning,
+        gap=_gap(cost, record.optimum),
+        claim_differs=claim is not None and abs(claim - cost) > COST_CLAIM_RELATIVE * cost,
+    )
+
+
+def _gap(cost: float, optimum: float | None) -> float | None:
+    if optimum is None:
+        return None
+    # Start and goal may be one place.
+    return cost / optimum - 1.0 if optimum > 0.0 else (0.0 if cost == 0.0 else None)
+
+
+def _number(value: Any) -> float | None:
+    return None if value is None else float(value)
+
+
+def _count(value: Any, otherwise: int | None = None) -> int | None:
+    return otherwise if value is None else int(value)
+
+
+def _as_path(path: Any) -> NDArray[np.float64] | None:
+    """A copy of the path, if it has the shape of one; the referee says what is wrong otherwise."""
+    try:
+        xy = np.array(path, dtype=np.float64)
+    except (TypeError, ValueError):
+        return None
+    return xy if xy.ndim == 2 and xy.shape[1] == 2 else None
+
+
+def _last_lines() -> str:
+    lines = traceback.format_exc().strip().splitlines()
+    return "\n".join(lines[-TRACEBACK_LINES:])

@@ -1,0 +1,194 @@
+"""A matrix, run: only what the store lacks, each row kept when its run ends.
+
+``concurrent.futures.Executor`` is the only idea of "where": here threads that wait for local
+processes. Rows come back to the caller's thread, which is the store's one writer.
+"""
+
+import os
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import closing, contextmanager
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from suite.harness.isolate import kill_running, run_isolated, start_server
+from suite.harness.machine import provenance
+from suite.harness.matrix import Limits, Matrix
+from suite.harness.warm import Warmth
+from suite.planner import PlanStatus
+from suite.record import Cell, RunRecord, canonical_json
+from suite.store import Store
+
+ORDER_SEED = 2003
+"""Of the order in which runs are started; any number will do, as long as it stays."""
+
+ABANDON_POLL_S = 0.02
+
+FAILURES = frozenset(
+    {
+        PlanStatus.INVALID,
+        PlanStatus.ERROR,
+        PlanStatus.CRASHED,
+        PlanStatus.TIMED_OUT,
+        PlanStatus.OUT_OF_MEMORY,
+    }
+)
+"""Ends that ask for somebody to look; an exhausted budget or a refusal does not."""
+
+
+@dataclass(slots=True)
+class Progress:
+    """How far a matrix is.
+
+    wanted : runs of the matrix.
+    done : of these in the store, those of earlier sessions included.
+    found : of these done in earlier sessions.
+    failed : runs of this session that ended in one of FAILURES.
+    running : labels of the runs that were handed out and are not back.
+    last : the row that came last.
+    """
+
+    wanted: int
+    done: int
+    found: int
+    failed: int = 0
+    running: list[str] = field(default_factory=list)
+    last: RunRecord | None = None
+
+    def summary(self) -> str:
+        """One line that says how the matrix ended."""
+        ran = self.done - self.found
+        text = f"{self.done} of {self.wanted} runs are in the store: {self.found} were there, "
+        return f"{text}{ran} ran now, {self.failed} of these failed."
+
+
+def run_matrix(
+    matrix: Matrix,
+    store: Store,
+    *,
+    jobs: int | None = None,
+    quick: bool = False,
+    executor: Executor | None = None,
+    on_progress: Callable[[Progress], None] = lambda _: None,
+) -> Progress:
+    """Run what is missing of a matrix, and keep each row as soon as it is there.
+
+    Parameters
+    ----------
+    matrix : Matrix
+    store : Store
+        Open for writing.
+    jobs : int, optional
+        Runs at a time; default: the number of processors.
+    quick : bool
+        Only the first two seeds.
+    executor : Executor, optional
+        Where the runs are waited for; default: threads of this process.
+    on_progress : callable
+        Told of each start and each row.
+
+    Returns
+    -------
+    Progress
+        At the end.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        After Ctrl-C, when the runs in flight are killed. All finished rows are in the store.
+    """
+    jobs = jobs or os.cpu_count() or 1
+    cells = matrix.cells(quick=quick)
+    there = store.keys()
+    missing = interleaved([cell for cell in cells if cell.key not in there])
+    found = len(cells) - len(missing)
+    progress = Progress(wanted=len(cells), done=found, found=found)
+    on_progress(progress)
+    if not missing:
+        return progress
+    warmth = warmth_for(missing, matrix.limits)
+    if executor is None:
+        start_server(warmth)
+    distributions = {(cell.distribution, cell.version) for cell in missing}
+    store.begin_session(provenance(matrix.name, distributions))
+    with _executor(executor, jobs) as own:
+        runs = _run_each(missing, matrix.limits, warmth, own, jobs, progress)
+        with closing(runs):
+            for record in runs:
+                if record is not None:
+                    _count(store, record, progress)
+                on_progress(progress)
+    return progress
+
+
+def interleaved(cells: Sequence[Cell]) -> list[Cell]:
+    """The cells in a random order that is always the same.
+
+    A machine that slows down for an hour then disturbs all planners alike, not one of them.
+    """
+    order = np.random.default_rng(ORDER_SEED).permutation(len(cells))
+    return [cells[i] for i in order]
+
+
+def warmth_for(cells: Iterable[Cell], limits: Limits) -> Warmth:
+    """What the fork server should have ready for these cells."""
+    planners = {(c.planner, canonical_json(c.settings)) for c in cells}
+    queries = {(c.scene_source, c.query) for c in cells}
+    return Warmth(tuple(sorted(planners)), tuple(sorted(queries)), limits.warm_up_s)
+
+
+@contextmanager
+def _executor(given: Executor | None, jobs: int) -> Iterator[Executor]:
+    if given is not None:
+        yield given
+        return
+    with ThreadPoolExecutor(jobs, thread_name_prefix="run") as own:
+        yield own
+
+
+def _count(store: Store, record: RunRecord, progress: Progress) -> None:
+    store.add(record)
+    progress.done += 1
+    progress.failed += record.status in FAILURES
+    progress.last = record
+
+
+def _run_each(
+    cells: Sequence[Cell],
+    limits: Limits,
+    warmth: Warmth,
+    executor: Executor,
+    jobs: int,
+    progress: Progress,
+) -> Generator[RunRecord | None, None, None]:
+    """Yield each record when it is there, and None when runs were started.
+
+    Runs that are in flight when the caller closes the iterator, or is interrupted, are killed.
+    """
+    queue = iter(cells)
+    in_flight: dict[Future[RunRecord], Cell] = {}
+    try:
+        while True:
+            # One more than can run: it is ready when a run ends, while that one's row is written.
+            while len(in_flight) < jobs + 1 and (cell := next(queue, None)) is not None:
+                in_flight[executor.submit(run_isolated, cell, limits, warmth)] = cell
+            progress.running = [cell.label for cell in list(in_flight.values())[:jobs]]
+            yield None
+            if not in_flight:
+                return
+            done, _ = wait(in_flight, return_when=FIRST_COMPLETED)
+            for future in done:
+                del in_flight[future]
+                yield future.result()
+    finally:
+        _abandon(in_flight)
+
+
+def _abandon(futures: Iterable[Future[RunRecord]]) -> None:
+    """Kill runs in flight. Their records are dropped: the next session runs them again."""
+    started = [future for future in futures if not future.cancel()]
+    while started:
+        # Again and again: a thread may have been about to start its process.
+        kill_running()
+        started = list(wait(started, timeout=ABANDON_POLL_S).not_done)

@@ -1,0 +1,148 @@
+"""What is to be run, and what came of it: the two nouns that harness, store and reports share."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from suite.planner import Budget, Improvement, PlanStatus
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cell:
+    """One run that is wanted: a query of a scene, a planner variant, a budget and a seed.
+
+    scene : name of the scene; part of the random stream.
+    scene_source : what :func:`suite.scenes.catalogue.load_scene` takes: a catalogue name or a path.
+    scene_hash : :func:`suite.scene.scene_fingerprint` of the scene and the query.
+    query : name of the query.
+    variant : name of the planner with these settings; part of the random stream.
+    planner : name of the plugin.
+    distribution, version : the package that the plugin comes from.
+    settings : all settings of the planner, as plain data.
+    budget : what the run may use.
+    seed : int, 0 or more.
+    position : place in its matrix; tables keep that order. The outcome does not depend on it.
+    """
+
+    scene: str
+    scene_source: str
+    scene_hash: str
+    query: str
+    variant: str
+    planner: str
+    distribution: str
+    version: str
+    settings: Mapping[str, Any]
+    budget: Budget
+    seed: int
+    position: int = 0
+
+    @property
+    def label(self) -> str:
+        """Short name of the cell for people."""
+        return f"{self.scene} / {self.variant} / seed {self.seed}"
+
+    @property
+    def budget_as_dict(self) -> dict[str, float | int | None]:
+        """The budget as plain data."""
+        budget = self.budget
+        return {
+            "wall_s": budget.wall_s,
+            "generations": budget.generations,
+            "checks": budget.checks,
+        }
+
+    @property
+    def key(self) -> str:
+        """Hash of everything that the outcome depends on: the row's identity in a store.
+
+        The names of scene, query and variant are in it because they choose the random stream.
+        """
+        content = [
+            self.scene_hash,
+            self.scene,
+            self.query,
+            self.variant,
+            self.planner,
+            self.version,
+            self.settings,
+            self.budget_as_dict,
+            self.seed,
+        ]
+        return hashlib.sha256(canonical_json(content).encode()).hexdigest()[:32]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RunRecord:
+    """One run that was attempted.
+
+    cell : what was run.
+    status : how it ended.
+    reason : why it ended so, where that is not plain: a refusal, the referee's objection, the end
+        of a traceback.
+    cost : the referee's length of the path, metres; None without an accepted path.
+    claimed_cost : the planner's own cost, metres, whatever it means by it.
+    claim_differs : whether the claim of an accepted path is not what the referee measured.
+    optimum : length of the exact shortest path, metres; None if there is no path.
+    gap : cost / optimum - 1.
+    clearance : distance of the accepted path from the nearest obstacle, metres.
+    segments : number of segments of the accepted path.
+    turning : sum of the angles by which the accepted path turns, radians.
+    generations, generation_of_best : in all, and until the final best was first found.
+    checks : collision checks of a segment against the scene.
+    wall_s, cpu_s : seconds that ``plan`` took.
+    time_to_best_s, cpu_to_best_s : seconds until the final best was first found.
+    load : load average of the machine when the run began, last minute.
+    contended : whether ``plan`` waited for the processor: wall time above CPU time by a tenth.
+    host : name of the machine.
+    started_at : date and time, ISO 8601, UTC.
+    improvements : what the planner reported while it ran.
+    trace : a row of measures for each generation that the planner described.
+    path : (n, 2) float64, metres, as the planner returned it; None if it returned none.
+    details : further numbers that the planner gave.
+    stderr : the last lines that the process wrote there, if the run failed.
+    """
+
+    cell: Cell
+    status: PlanStatus
+    reason: str | None = None
+    cost: float | None = None
+    claimed_cost: float | None = None
+    claim_differs: bool | None = None
+    optimum: float | None = None
+    gap: float | None = None
+    clearance: float | None = None
+    segments: int | None = None
+    turning: float | None = None
+    generations: int | None = None
+    generation_of_best: int | None = None
+    checks: int | None = None
+    wall_s: float | None = None
+    time_to_best_s: float | None = None
+    cpu_s: float | None = None
+    cpu_to_best_s: float | None = None
+    load: float | None = None
+    contended: bool | None = None
+    host: str | None = None
+    started_at: str | None = None
+    improvements: tuple[Improvement, ...] = ()
+    trace: tuple[Mapping[str, float], ...] = ()
+    path: NDArray[np.float64] | None = None
+    details: Mapping[str, float] = field(default_factory=dict)
+    stderr: str = ""
+
+
+def canonical_json(value: Any) -> str:
+    """JSON with sorted keys and no spaces: equal values give equal text.
+
+    Examples
+    --------
+    >>> canonical_json({"b": 1, "a": [2.0, None]})
+    '{"a":[2.0,null],"b":1}'
+    """
+    return json.dumps(value, sort_keys=True, separators=(",", ":"), default=str)

@@ -1,0 +1,76 @@
+"""The rows of a store as files that any data tool reads."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from suite.errors import StoreError
+from suite.store import read_events, read_paths, read_runs, read_traces
+
+
+def export_rows(store: Path, directory: Path, kind: str) -> list[Path]:
+    """Write runs, events, traces and paths, a file each.
+
+    Parameters
+    ----------
+    store : Path
+    directory : Path
+        Made if it is missing.
+    kind : str
+        ``parquet`` or ``csv``.
+
+    Returns
+    -------
+    list of Path
+        The files.
+
+    Raises
+    ------
+    StoreError
+        If the store can't be read, or the files can't be written.
+    """
+    frames = {
+        "runs": read_runs(store),
+        "events": read_events(store),
+        "traces": read_traces(store),
+        "paths": paths_frame(store),
+    }
+    folder = made_folder(directory)
+    files = []
+    for name, frame in frames.items():
+        file = folder / f"{name}.{kind}"
+        try:
+            if kind == "parquet":
+                frame.to_parquet(file, index=False)
+            else:
+                frame.to_csv(file, index=False, lineterminator="\n")
+        except OSError as error:
+            raise StoreError(f"{file}: can't be written ({error.strerror}).") from error
+        files.append(file)
+    return files
+
+
+def paths_frame(store: Path) -> pd.DataFrame:
+    """The paths of a store, a row for each waypoint: key, number, x, y."""
+    frames = [
+        pd.DataFrame({"key": key, "number": range(len(xy)), "x": xy[:, 0], "y": xy[:, 1]})
+        for key, xy in sorted(read_paths(store).items())
+    ]
+    if not frames:
+        return pd.DataFrame(columns=["key", "number", "x", "y"])
+    return pd.concat(frames, ignore_index=True)
+
+
+def made_folder(directory: Path) -> Path:
+    """A folder, made if it is missing.
+
+    Raises
+    ------
+    StoreError
+        If it can't be made.
+    """
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreError(f"{directory}: can't be made a folder ({error.strerror}).") from error
+    return directory

@@ -1,0 +1,142 @@
+"""A results folder, made from a store: tables, rows, a figure for each scene, and the manifest."""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from suite.errors import KbgaBenchError, StoreError
+from suite.exact import shortest_path
+from suite.report.export import export_rows, made_folder
+from suite.report.figures import plot_scene_results, save
+from suite.report.summary import feasible
+from suite.report.table import SUFFIX, Format, Table, render
+from suite.report.tables import all_tables
+from suite.scene import Query, Scene, scene_fingerprint
+from suite.scenes.catalogue import load_scene
+from suite.store import read_paths, read_runs, read_sessions
+
+MANIFEST = "manifest.json"
+
+
+def write_results(store: Path, directory: Path) -> list[Path]:
+    """Make a results folder from a store; the same store gives the same bytes.
+
+    Parameters
+    ----------
+    store : Path
+    directory : Path
+        Made if it is missing; files of the same names are replaced.
+
+    Returns
+    -------
+    list of Path
+        The files.
+
+    Raises
+    ------
+    KbgaBenchError
+        If the store holds no runs, a scene has changed since, or a file can't be written.
+    """
+    runs = read_runs(store)
+    if runs.empty:
+        raise StoreError(f"{store}: it holds no runs yet. `kbga-bench run` fills it.")
+    scenes = _scenes(runs)
+    folder = made_folder(directory)
+    tables = all_tables(runs)
+    files = write_tables(tables, folder, Format.MARKDOWN)
+    files += write_tables(tables, folder, Format.CSV)
+    files += export_rows(store, made_folder(folder / "rows"), "parquet")
+    files += _write_figures(runs, read_paths(store), scenes, folder)
+    manifest = folder / MANIFEST
+    _write_text(manifest, json.dumps(_manifest(store, runs, folder, files), indent=2) + "\n")
+    return [*files, manifest]
+
+
+def write_tables(tables: Sequence[Table], directory: Path, style: Format) -> list[Path]:
+    """Write each table to a file of its name.
+
+    Raises
+    ------
+    KbgaBenchError
+        If a file can't be written.
+    """
+    folder = made_folder(directory)
+    files = []
+    for table in tables:
+        file = folder / f"{table.name}{SUFFIX[style]}"
+        _write_text(file, render(table, style))
+        files.append(file)
+    return files
+
+
+def _scenes(runs: pd.DataFrame) -> list[tuple[Scene, Query]]:
+    """Scenes and queries of the runs, as they were when these were made."""
+    pairs = []
+    wanted = runs[["scene_source", "query", "scene_hash"]].drop_duplicates()
+    for source, name, fingerprint in wanted.itertuples(index=False):
+        scene = load_scene(source)
+        query = scene.query(name)
+        if scene_fingerprint(scene, query) != fingerprint:
+            raise StoreError(
+                f"{source}: the scene has changed since its rows were made. Run them again into a "
+                "new store, or put the scene back."
+            )
+        pairs.append((scene, query))
+    return pairs
+
+
+def _write_figures(
+    runs: pd.DataFrame, paths: dict[str, Any], scenes: list[tuple[Scene, Query]], folder: Path
+) -> list[Path]:
+    files = []
+    for scene, query in scenes:
+        here = runs[(runs["scene"] == scene.name) & (runs["query"] == query.name)]
+        best, labels = {}, {}
+        solved = feasible(here)
+        for variant in here["variant"].unique():
+            group = solved[solved["variant"] == variant]
+            share = f"{len(group)} of {(here['variant'] == variant).sum()}"
+            if len(group):
+                row = group.loc[group["cost"].idxmin()]
+                best[variant] = paths[row["key"]]
+                labels[variant] = f"{variant}: {row['cost']:.2f} m ({share})"
+        several = len(scene.queries) > 1
+        file = folder / (f"{scene.name}-{query.name}.png" if several else f"{scene.name}.png")
+        exact = shortest_path(scene, query)
+        if exact.path is not None and not best:
+            best, labels = {"optimum": exact.path}, {"optimum": f"optimum: {exact.length:.2f} m"}
+        save(plot_scene_results(scene, query, best, labels=labels), file)
+        files.append(file)
+    return files
+
+
+def _manifest(
+    store: Path, runs: pd.DataFrame, folder: Path, files: Sequence[Path]
+) -> dict[str, Any]:
+    sessions = read_sessions(store)
+    matrices = list(dict.fromkeys(session["matrix"] for session in sessions))
+    commands = [f"kbga-bench run {matrix} --store STORE" for matrix in matrices]
+    return {
+        "made_by": [*commands, f"kbga-bench results STORE {folder.name}"],
+        "runs": len(runs),
+        "by_status": {str(k): int(v) for k, v in runs["status"].value_counts().items()},
+        "planners": list(runs["variant"].unique()),
+        "scenes": list(runs["scene"].unique()),
+        "seeds": int(runs["seed"].nunique()),
+        "sessions": sessions,
+        "sha256": {
+            str(file.relative_to(folder)): hashlib.sha256(file.read_bytes()).hexdigest()
+            for file in files
+        },
+    }
+
+
+def _write_text(file: Path, text: str) -> None:
+    try:
+        file.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise KbgaBenchError(f"{file}: can't be written ({error.strerror}).") from error

@@ -1,0 +1,42 @@
+"""The picture of one run that ``kbga-bench plan --plot`` draws."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from suite.exact import shortest_path
+from suite.record import RunRecord
+from suite.report.figures import plot_run, save
+from suite.scenes.catalogue import load_scene
+
+FIRST_POPULATION = "first_population"
+"""Name of the snapshot that planners with a population take of it."""
+
+
+def draw_record(
+    record: RunRecord, snapshots: Mapping[str, Sequence[NDArray[np.float64]]], file: Path
+) -> None:
+    """Draw a run, its first population if it took a snapshot of it, and the exact optimum.
+
+    Raises
+    ------
+    KbgaBenchError
+        If the file can't be written.
+    """
+    cell = record.cell
+    scene = load_scene(cell.scene_source)
+    query = scene.query(cell.query)
+    exact = shortest_path(scene, query)
+    outcome = f"{record.cost:.2f} m" if record.cost is not None else str(record.status)
+    figure = plot_run(
+        scene,
+        query,
+        record.path,
+        path_label=f"{cell.variant}, seed {cell.seed}: {outcome}",
+        first_population=snapshots.get(FIRST_POPULATION, ()),
+        optimum=exact.path,
+        optimum_label=f"optimum: {exact.length:.2f} m",
+    )
+    save(figure, file)

@@ -1,0 +1,150 @@
+"""A table with its title and its note, and the formats in which it is printed."""
+
+import math
+import textwrap
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from numbers import Integral, Real
+from typing import Any
+
+import pandas as pd
+from tabulate import tabulate
+
+HEADER_WIDTH = 12
+NOTE_WIDTH = 100
+
+
+class Format(StrEnum):
+    """How a table is written."""
+
+    TABLE = "table"
+    CSV = "csv"
+    MARKDOWN = "markdown"
+    LATEX = "latex"
+
+
+SUFFIX = {Format.TABLE: ".txt", Format.CSV: ".csv", Format.MARKDOWN: ".md", Format.LATEX: ".tex"}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Table:
+    """A table of a report.
+
+    name : of its file.
+    title : one line above it.
+    frame : DataFrame with one level of columns; the index carries nothing. Columns whose name
+        ends in ``(s)`` or ``(ms)`` hold seconds or milliseconds, in ``(%)`` per cent.
+    note : what a reader must know to read it rightly.
+    """
+
+    name: str
+    title: str
+    frame: pd.DataFrame
+    note: str = ""
+
+
+def render(table: Table, style: Format) -> str:
+    """Write a table as text, whole, with a newline at its end.
+
+    Parameters
+    ----------
+    table : Table
+    style : Format
+        CSV holds the numbers as they are, without title and note; the others round for reading.
+    """
+    return _RENDERERS[style](table)
+
+
+def _csv(table: Table) -> str:
+    return table.frame.to_csv(index=False, lineterminator="\n")
+
+
+def _plain(table: Table) -> str:
+    # Headers are broken into lines: numbers are narrower than their names.
+    headers = [textwrap.fill(str(c), HEADER_WIDTH) for c in table.frame.columns]
+    note = textwrap.fill(table.note, NOTE_WIDTH)
+    return f"{table.title}\n\n{_grid(table, 'simple', headers)}\n{_below(note)}"
+
+
+def _markdown(table: Table) -> str:
+    headers = [str(c) for c in table.frame.columns]
+    return f"### {table.title}\n\n{_grid(table, 'pipe', headers)}\n{_below(table.note)}"
+
+
+def _grid(table: Table, layout: str, headers: list[str]) -> str:
+    frame = table.frame
+    return tabulate(
+        _as_texts(frame).to_numpy().tolist(),
+        headers=headers,
+        tablefmt=layout,
+        disable_numparse=True,
+        colalign=["right" if _is_numeric(frame[c]) else "left" for c in frame.columns]
+        if len(frame)
+        else None,
+    )
+
+
+def _latex(table: Table) -> str:
+    columns = "".join("r" if _is_numeric(table.frame[c]) else "l" for c in table.frame.columns)
+    texts = _as_texts(table.frame)
+    body = texts.style.hide(axis="index").format(escape="latex")
+    body = body.format_index(escape="latex", axis=1)
+    return str(
+        body.to_latex(
+            column_format=columns,
+            hrules=True,
+            caption=_escaped(f"{table.title}. {table.note}".strip()),
+            label=f"tab:{table.name}",
+            position_float="centering",
+        )
+    )
+
+
+_RENDERERS: dict[Format, Callable[[Table], str]] = {
+    Format.TABLE: _plain,
+    Format.CSV: _csv,
+    Format.MARKDOWN: _markdown,
+    Format.LATEX: _latex,
+}
+
+
+def _below(note: str) -> str:
+    return f"\n{note}\n" if note else ""
+
+
+def _escaped(text: str) -> str:
+    return text.replace("%", r"\%").replace("_", r"\_").replace("&", r"\&").replace("#", r"\#")
+
+
+def _is_numeric(column: "pd.Series[Any]") -> bool:
+    return bool(pd.api.types.is_numeric_dtype(column))
+
+
+def _as_texts(frame: pd.DataFrame) -> pd.DataFrame:
+    columns = {}
+    for name in frame.columns:
+        digits = _digits(str(name))
+        columns[name] = [_as_text(value, digits) for value in frame[name]]
+    return pd.DataFrame(columns)
+
+
+def _digits(column: str) -> int | None:
+    """Digits after the point; None for the paper's own figures, which stay as it prints them."""
+    if column.startswith("paper"):
+        return None
+    return 3 if column.endswith("s)") else 1 if column.startswith("gen") else 2
+
+
+def _as_text(value: Any, digits: int | None) -> str:
+    if value is None or value is pd.NA or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    if isinstance(value, bool | str) or not isinstance(value, Real):
+        return str(value)
+    if isinstance(value, Integral):
+        return str(value)
+    number = float(value)
+    if digits is not None:
+        # Rounding may leave a zero with a sign.
+        return f"{round(number, digits) + 0.0:.{digits}f}"
+    return f"{number:.0f}" if number.is_integer() and abs(number) >= 10 else f"{number:.2f}"

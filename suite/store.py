@@ -1,0 +1,338 @@
+"""The result store: an SQLite file in WAL mode with one writer, a row committed when its run ends.
+
+A row and all that belongs to it is written in one transaction, so kill -9 costs the runs in flight
+and nothing else. pandas reads it; see :func:`read_runs`.
+"""
+
+import json
+import sqlite3
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager
+from dataclasses import fields
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from suite.errors import StoreError
+from suite.record import Cell, RunRecord, canonical_json
+
+APPLICATION_ID = 0x4B424741  # "KBGA"
+SCHEMA_VERSION = 1
+
+SCHEMA = """
+CREATE TABLE sessions (
+    id INTEGER PRIMARY KEY,
+    provenance TEXT NOT NULL
+);
+CREATE TABLE runs (
+    key TEXT PRIMARY KEY, position INTEGER NOT NULL,
+    session INTEGER NOT NULL REFERENCES sessions (id),
+    scene TEXT NOT NULL, query TEXT NOT NULL, variant TEXT NOT NULL, seed INTEGER NOT NULL,
+    status TEXT NOT NULL, reason TEXT,
+    cost REAL, claimed_cost REAL, claim_differs INTEGER, optimum REAL, gap REAL,
+    clearance REAL, segments INTEGER, turning REAL,
+    generations INTEGER, generation_of_best INTEGER, checks INTEGER,
+    wall_s REAL, time_to_best_s REAL, cpu_s REAL, cpu_to_best_s REAL,
+    load REAL, contended INTEGER,
+    planner TEXT NOT NULL, distribution TEXT NOT NULL, version TEXT NOT NULL,
+    settings TEXT NOT NULL,
+    budget_wall_s REAL, budget_generations INTEGER, budget_checks INTEGER,
+    scene_source TEXT NOT NULL, scene_hash TEXT NOT NULL,
+    host TEXT, started_at TEXT, details TEXT NOT NULL, stderr TEXT NOT NULL
+);
+CREATE TABLE events (
+    key TEXT NOT NULL REFERENCES runs (key), number INTEGER NOT NULL,
+    wall_s REAL NOT NULL, cpu_s REAL NOT NULL, cost REAL NOT NULL,
+    generation INTEGER, checks INTEGER,
+    PRIMARY KEY (key, number)
+) WITHOUT ROWID;
+CREATE TABLE traces (key TEXT PRIMARY KEY REFERENCES runs (key), trace TEXT NOT NULL);
+CREATE TABLE paths (key TEXT PRIMARY KEY REFERENCES runs (key), xy BLOB NOT NULL);
+"""
+
+_CELL_COLUMNS = tuple(f.name for f in fields(Cell) if f.name not in ("settings", "budget"))
+_OUTCOME_COLUMNS = tuple(
+    f.name
+    for f in fields(RunRecord)
+    if f.name not in ("cell", "improvements", "trace", "path", "details")
+)
+
+
+class Store:
+    """An open store, for its one writer. A context manager; made by :func:`open_store`.
+
+    path : Path of the file.
+    """
+
+    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
+        self.path = path
+        self._connection = connection
+        self._session: int | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file. Everything that was added is in it already."""
+        self._connection.close()
+
+    def begin_session(self, provenance: Mapping[str, Any]) -> None:
+        """Say what machine and which versions the rows that follow come from."""
+        with self._writing() as connection:
+            cursor = connection.execute(
+                "INSERT INTO sessions (provenance) VALUES (?)", (canonical_json(provenance),)
+            )
+            self._session = cursor.lastrowid
+
+    def keys(self) -> set[str]:
+        """Keys of the rows that are there."""
+        with _explained(self.path):
+            return {key for (key,) in self._connection.execute("SELECT key FROM runs")}
+
+    def add(self, record: RunRecord) -> None:
+        """Write one row and all that belongs to it, whole or not at all.
+
+        Raises
+        ------
+        StoreError
+            If the row is there already, no session was begun, or the file can't be written.
+        """
+        if self._session is None:
+            raise StoreError(f"{self.path}: begin a session before adding rows.")
+        row = _as_row(record)
+        row["session"] = self._session
+        key = row["key"]
+        with self._writing() as connection:
+            connection.execute(_insert("runs", row), row)
+            connection.executemany(
+                "INSERT INTO events VALUES (?, ?, ?, ?, ?, ?, ?)",
+                [
+                    (key, i, e.wall_s, e.cpu_s, e.cost, e.generation, e.checks)
+                    for i, e in enumerate(record.improvements)
+                ],
+            )
+            if record.trace:
+                connection.execute(
+                    "INSERT INTO traces VALUES (?, ?)", (key, json.dumps(_columns(record.trace)))
+                )
+            if record.path is not None:
+                blob = np.ascontiguousarray(record.path, dtype="<f8").tobytes()
+                connection.execute("INSERT INTO paths VALUES (?, ?)", (key, blob))
+
+    @contextmanager
+    def _writing(self) -> Iterator[sqlite3.Connection]:
+        with _explained(self.path), self._connection:
+            yield self._connection
+
+
+def open_store(path: Path, *, create: bool = True) -> Store:
+    """Open a store for writing.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    create : bool
+        Make it, and the folder that it is in, when it is not there.
+
+    Returns
+    -------
+    Store
+
+    Raises
+    ------
+    StoreError
+        If the file is missing (and ``create`` is false), is no store, comes from another version,
+        or can't be written.
+    """
+    is_new = not path.exists()
+    if is_new and not create:
+        raise _missing(path)
+    if is_new:
+        _make_folder(path)
+    connection = _connect(path, writable=True)
+    try:
+        with _explained(path):
+            # In WAL mode NORMAL survives the death of the process; FULL would add an fsync a row
+            # and save only rows of the last moment before a power cut, which are run again anyway.
+            connection.execute("PRAGMA synchronous = NORMAL")
+            if _is_empty(connection):
+                _create_tables(connection)
+        _check_is_store(path, connection)
+    except BaseException:
+        connection.close()
+        raise
+    return Store(path, connection)
+
+
+def read_runs(path: Path) -> pd.DataFrame:
+    """All rows, one for each run, in the order of their matrix.
+
+    Returns
+    -------
+    DataFrame
+        The columns are the fields of :class:`suite.record.Cell` and
+        :class:`suite.record.RunRecord`; settings and details are JSON text.
+    """
+    frame = _read(path, "SELECT * FROM runs ORDER BY position, rowid")
+    for column in ("claim_differs", "contended"):
+        frame[column] = frame[column].astype("boolean")
+    for column in ("segments", "generations", "generation_of_best", "checks"):
+        frame[column] = frame[column].astype("Int64")
+    numbers = [
+        "cost", "claimed_cost", "optimum", "gap", "clearance", "turning", "wall_s",
+        "time_to_best_s", "cpu_s", "cpu_to_best_s", "load", "budget_wall_s",
+    ]  # fmt: skip
+    # A column without a single value would arrive as objects.
+    frame[numbers] = frame[numbers].astype("float64")
+    return frame
+
+
+def read_events(path: Path) -> pd.DataFrame:
+    """Improvements of all runs: key, number, wall_s, cpu_s, cost, generation, checks."""
+    return _read(path, "SELECT * FROM events ORDER BY key, number")
+
+
+def read_traces(path: Path) -> pd.DataFrame:
+    """Measures of the generations of all runs that described them: key, then what they gave."""
+    with closing(_open_for_reading(path)) as connection, _explained(path):
+        rows = connection.execute("SELECT key, trace FROM traces ORDER BY key").fetchall()
+    frames = [pd.DataFrame(json.loads(text)).assign(key=key) for key, text in rows]
+    if not frames:
+        return pd.DataFrame({"key": pd.Series(dtype="str")})
+    frame = pd.concat(frames, ignore_index=True)
+    return frame[["key", *(c for c in frame.columns if c != "key")]]
+
+
+def read_paths(path: Path) -> dict[str, NDArray[np.float64]]:
+    """Paths as the planners returned them: key to (n, 2) float64, metres."""
+    with closing(_open_for_reading(path)) as connection, _explained(path):
+        rows = connection.execute("SELECT key, xy FROM paths").fetchall()
+    return {key: np.frombuffer(xy, dtype="<f8").reshape(-1, 2) for key, xy in rows}
+
+
+def read_sessions(path: Path) -> list[dict[str, Any]]:
+    """Provenance of each session that wrote rows, oldest first, with its ``id``."""
+    with closing(_open_for_reading(path)) as connection, _explained(path):
+        rows = connection.execute("SELECT id, provenance FROM sessions ORDER BY id").fetchall()
+    return [{"id": number, **json.loads(text)} for number, text in rows]
+
+
+def _as_row(record: RunRecord) -> dict[str, Any]:
+    cell = record.cell
+    row: dict[str, Any] = {name: getattr(cell, name) for name in _CELL_COLUMNS}
+    row |= {name: getattr(record, name) for name in _OUTCOME_COLUMNS}
+    row |= {f"budget_{name}": value for name, value in cell.budget_as_dict.items()}
+    row["key"] = cell.key
+    row["status"] = str(record.status)
+    row["settings"] = canonical_json(cell.settings)
+    row["details"] = canonical_json(record.details)
+    return row
+
+
+def _insert(table: str, row: Mapping[str, Any]) -> str:
+    return f"INSERT INTO {table} ({', '.join(row)}) VALUES ({', '.join(f':{c}' for c in row)})"
+
+
+def _columns(trace: tuple[Mapping[str, float], ...]) -> dict[str, list[float | None]]:
+    names = dict.fromkeys(name for measures in trace for name in measures)
+    return {name: [measures.get(name) for measures in trace] for name in names}
+
+
+def _missing(path: Path) -> StoreError:
+    return StoreError(f"{path}: there is no such store. `kbga-bench run` makes one.")
+
+
+def _make_folder(path: Path) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreError(f"{path}: its folder can't be made ({error.strerror}).") from error
+
+
+def _connect(path: Path, *, writable: bool) -> sqlite3.Connection:
+    with _explained(path):
+        if writable:
+            return sqlite3.connect(path, timeout=10.0)
+        return sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=10.0)
+
+
+def _open_for_reading(path: Path) -> sqlite3.Connection:
+    if not path.exists():
+        raise _missing(path)
+    connection = _connect(path, writable=False)
+    try:
+        _check_is_store(path, connection)
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def _is_empty(connection: sqlite3.Connection) -> bool:
+    (tables,) = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
+    return bool(tables == 0)
+
+
+def _create_tables(connection: sqlite3.Connection) -> None:
+    # WAL is set first: it can't be changed inside a transaction. All else is one, so that a store
+    # exists whole or not at all.
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.executescript(
+        f"BEGIN EXCLUSIVE; {SCHEMA} PRAGMA application_id = {APPLICATION_ID};"
+        f"PRAGMA user_version = {SCHEMA_VERSION}; COMMIT;"
+    )
+
+
+def _check_is_store(path: Path, connection: sqlite3.Connection) -> None:
+    with _explained(path):
+        (application,) = connection.execute("PRAGMA application_id").fetchone()
+        (version,) = connection.execute("PRAGMA user_version").fetchone()
+    if application != APPLICATION_ID:
+        raise StoreError(f"{path}: is an SQLite file, but no store of kbga-bench. Name another.")
+    if version != SCHEMA_VERSION:
+        raise StoreError(
+            f"{path}: is a store of version {version}, and this kbga-bench reads version "
+            f"{SCHEMA_VERSION}. Use the kbga-bench that wrote it, or name a new store."
+        )
+
+
+def _read(path: Path, query: str) -> pd.DataFrame:
+    with closing(_open_for_reading(path)) as connection, _explained(path):
+        return pd.read_sql_query(query, connection)
+
+
+@contextmanager
+def _explained(path: Path) -> Iterator[None]:
+    """Say SQLite's errors in words that name the file and what to do."""
+    try:
+        yield
+    except sqlite3.IntegrityError as error:
+        raise StoreError(f"{path}: a row can't be added ({error}).") from error
+    except sqlite3.DatabaseError as error:
+        raise StoreError(f"{path}: {_in_words(error)}") from error
+
+
+def _in_words(error: sqlite3.DatabaseError) -> str:
+    name = getattr(error, "sqlite_errorname", "")
+    if name.startswith("SQLITE_NOTADB"):
+        return "is no store (not an SQLite file). Name another."
+    if name.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
+        return "another process is writing to it. Wait for it, or name another store."
+    if name.startswith(("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM")):
+        return f"can't be opened or written ({error}). Check its folder and permissions."
+    if name.startswith("SQLITE_FULL"):
+        return "the disk is full. Make room and run the same command again."
+    return f"SQLite says: {error}."

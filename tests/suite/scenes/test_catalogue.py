@@ -1,0 +1,180 @@
+import json
+import shutil
+import warnings
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+
+from suite.errors import SceneError
+from suite.exact import shortest_path
+from suite.geometry.kernels import first_collision
+from suite.scenes.catalogue import load_scene, scene_file, scene_names
+from suite.scenes.homotopy import route_optima
+
+FIGURES = {
+    "unstructured": "6",
+    "maze": "7",
+    "zigzag": "8",
+    "double_u": "9",
+    "clustered": "10",
+    "obstacles_20": "14",
+    "obstacles_30": "14",
+    "obstacles_40": "14",
+}
+BEST_OF_PAPER = {
+    "unstructured": 117.56,
+    "maze": 411.67,
+    "zigzag": 155.89,
+    "double_u": 152.01,
+    "clustered": 160.50,
+}
+SERIES = ("obstacles_20", "obstacles_30", "obstacles_40")
+
+every_scene = pytest.mark.parametrize("name", scene_names())
+
+
+def test_the_catalogue_is_in_the_papers_order():
+    assert scene_names() == list(FIGURES)
+
+
+def test_the_catalogue_names_exactly_the_files_that_are_shipped():
+    shipped = {f.stem for f in scene_file("maze").parent.glob("*.geojson")}
+    assert shipped == set(scene_names())
+
+
+@every_scene
+def test_a_scene_loads_without_a_warning(name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        scene = load_scene(name)
+    assert scene.name == name
+    assert [q.name for q in scene.queries] == ["main"]
+    assert scene.bounds == (0.0, 0.0, 100.0, 100.0)
+
+
+@every_scene
+def test_a_scene_says_that_it_is_a_reconstruction_and_of_which_figure(name):
+    properties = load_scene(name).properties
+    assert properties["reconstruction"] is True
+    assert properties["figure"] == FIGURES[name]
+    assert "reconstructed" in properties["description"]
+    assert properties.get("paper_best") == BEST_OF_PAPER.get(name)
+
+
+@every_scene
+def test_the_stored_optimum_is_the_exact_one(name):
+    scene = load_scene(name)
+    exact = shortest_path(scene, scene.query())
+    assert scene.stored_optimum(scene.query()) == pytest.approx(exact.length, abs=1e-9, rel=0)
+
+
+@pytest.mark.parametrize(("name", "best"), BEST_OF_PAPER.items())
+def test_the_optimum_is_close_below_the_best_cost_of_the_paper(name, best):
+    scene = load_scene(name)
+    ratio = shortest_path(scene, scene.query()).length / best
+    assert 0.985 <= ratio <= 1.0
+
+
+@every_scene
+def test_the_straight_line_is_blocked(name):
+    scene = load_scene(name)
+    query = scene.query()
+    line = shapely.LineString([query.start, query.goal])
+    assert line.relate_pattern(scene.arrangement.solid, "T********")
+
+
+@pytest.mark.parametrize("name", ["unstructured", "maze", "zigzag", "double_u", "clustered"])
+def test_a_random_path_is_hardly_ever_feasible(name):
+    scene, query, rng = load_scene(name), load_scene(name).query(), np.random.default_rng(6)
+    feasible = 0
+    for _ in range(1000):
+        waypoints = rng.integers(0, 101, (rng.integers(1, 9), 2)).astype(np.float64)
+        path = np.vstack([query.start, waypoints, query.goal])
+        feasible += first_collision(path, scene.arrays) == -1
+    assert feasible <= 2
+
+
+@every_scene
+def test_start_and_goal_have_room_around_them(name):
+    scene = load_scene(name)
+    for point in (scene.query().start, scene.query().goal):
+        assert scene.arrangement.solid.distance(shapely.Point(point)) > 1.0
+
+
+@every_scene
+def test_a_gap_between_obstacles_is_open_or_closed_but_never_a_slit(name):
+    groups = [*load_scene(name).arrangement.groups, shapely.box(0, 0, 100, 100).exterior]
+    for i, group in enumerate(groups):
+        for other in groups[i + 1 :]:
+            distance = group.distance(other)
+            assert distance == 0.0 or distance >= 1.5
+
+
+@pytest.mark.parametrize("name", SERIES)
+def test_the_series_has_the_number_of_parts_in_its_name(name):
+    assert load_scene(name).part_count == int(name.removeprefix("obstacles_"))
+
+
+@pytest.mark.parametrize(("small", "large"), list(pairwise(SERIES)))
+def test_each_scene_of_the_series_holds_the_one_before(small, large):
+    few, many = load_scene(small), load_scene(large)
+    shapes = {o.polygon.wkb for o in many.obstacles}
+    assert {o.polygon.wkb for o in few.obstacles} < shapes
+    assert few.query().start.tolist() == many.query().start.tolist()
+    assert few.query().goal.tolist() == many.query().goal.tolist()
+    assert few.stored_optimum(few.query()) <= many.stored_optimum(many.query())
+
+
+def test_clustered_has_four_routes_within_seven_per_cent_of_the_best():
+    scene = load_scene("clustered")
+    assert len(route_optima(scene, scene.query(), limit_ratio=1.07, most=4)) == 4
+
+
+def test_maze_has_one_route_within_seven_per_cent_of_the_best():
+    scene = load_scene("maze")
+    assert len(route_optima(scene, scene.query(), limit_ratio=1.07)) == 1
+
+
+def test_every_wall_of_zigzag_and_maze_is_joined_to_the_border():
+    for name in ("zigzag", "maze"):
+        scene = load_scene(name)
+        for group in scene.arrangement.groups:
+            assert group.intersects(scene.workspace.exterior)
+
+
+def test_an_unknown_name_is_answered_with_the_catalogue_and_the_nearest_name():
+    with pytest.raises(SceneError) as error:
+        load_scene("mase")
+    assert str(error.value) == (
+        "no scene 'mase'. Catalogue: unstructured, maze, zigzag, double_u, clustered, "
+        "obstacles_20, obstacles_30, obstacles_40. Did you mean 'maze'?"
+    )
+
+
+def test_a_name_that_resembles_nothing_gets_no_suggestion():
+    with pytest.raises(SceneError, match=r"obstacles_40\.$"):
+        scene_file("xyzzy")
+
+
+def test_a_scene_named_by_path_is_read_from_there(tmp_path, monkeypatch):
+    mine = tmp_path / "mine.geojson"
+    document = json.loads(scene_file("maze").read_text(encoding="utf-8"))
+    document["name"] = "mine"
+    mine.write_text(json.dumps(document), encoding="utf-8")
+    shutil.copy(mine, tmp_path / "plain")
+    monkeypatch.chdir(tmp_path)
+    for path in (mine, str(mine), "mine.geojson", "./plain", Path("plain")):
+        assert load_scene(path).name == "mine"
+
+
+def test_a_missing_file_is_named_in_the_error():
+    with pytest.raises(SceneError, match=r"nowhere\.json: can't be read"):
+        load_scene("nowhere.json")
+
+
+def test_the_robots_radius_lengthens_the_way():
+    point, disc = load_scene("double_u"), load_scene("double_u", inflate=1.0)
+    assert shortest_path(disc, disc.query()).length > shortest_path(point, point.query()).length
