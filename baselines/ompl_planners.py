@@ -6,6 +6,7 @@ corners. What a callback costs (0.6 us) is part of the planner's time. Metres.
 """
 
 import time
+import weakref
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
@@ -18,11 +19,17 @@ from ompl import geometric as og
 from ompl import util as ou
 
 from baselines.visibility_graph import tiny_scene
+from suite.exact import path_length
 from suite.geometry.packed import pack, packed_segment_enters
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
 from suite.scene import Query, Scene
 
+Point = tuple[float, float]
+
 LARGEST_SEED = 2**31 - 2
+
+PATIENCE_S = 4.0
+"""How long a search of a roadmap may wait for OMPL's thread, where a path is known to exist."""
 
 NO_LIMIT_S = 1e6
 """A time that no run reaches: OMPL's condition that can be ended by a call needs some time."""
@@ -117,6 +124,12 @@ class ExactCollision(ob.MotionValidator):  # type: ignore[misc]
 
     Once ``limit`` checks are spent, nothing is checked any more and every motion is refused: a
     planner that is in the middle of an iteration then ends it without new edges.
+
+    limit : checks that may be made.
+    stop_at : checks after which ``stop`` is called.
+    checks : checks made, of states and motions.
+    state_checks : those of states.
+    free_motions : list that takes the two ends of each free motion; None to keep none.
     """
 
     def __init__(self, information: Any, scene: Scene, limit: float) -> None:
@@ -127,25 +140,44 @@ class ExactCollision(ob.MotionValidator):  # type: ignore[misc]
         self.stop: Callable[[], None] = _do_nothing
         self.checks = 0
         self.state_checks = 0
+        self.free_motions: list[tuple[Point, Point]] | None = None
 
     def checkMotion(self, a: Any, b: Any) -> bool:  # noqa: N802 (OMPL's name)
         """Whether the segment a-b is free."""
-        if self.checks >= self.stop_at:
-            self.stop()
-            if self.checks >= self.limit:
-                return False
-        self.checks += 1
-        return not packed_segment_enters(a[0], a[1], b[0], b[1], self._floats, self._whole)
+        ax, ay, bx, by = a[0], a[1], b[0], b[1]
+        is_free = self._check(ax, ay, bx, by)
+        if is_free and self.free_motions is not None:
+            self.free_motions.append(((ax, ay), (bx, by)))
+        return is_free
 
     def is_free(self, state: Any) -> bool:
         """Whether a point is free; it counts as the check of a segment, which it costs."""
         self.state_checks += 1
         x, y = state[0], state[1]
-        return self.checkMotion((x, y), (x, y))
+        return self._check(x, y, x, y)
+
+    def is_free_point(self, x: float, y: float) -> bool:
+        """Whether a point is free; not counted."""
+        return not packed_segment_enters(x, y, x, y, self._floats, self._whole)
+
+    def _check(self, ax: float, ay: float, bx: float, by: float) -> bool:
+        if self.checks >= self.stop_at:
+            self.stop()
+            if self.checks >= self.limit:
+                return False
+        self.checks += 1
+        return not packed_segment_enters(ax, ay, bx, by, self._floats, self._whole)
 
 
 def _do_nothing() -> None:
     pass
+
+
+def _alive(reference: "weakref.ref[ExactCollision]") -> ExactCollision:
+    collision = reference()
+    if collision is None:
+        raise RuntimeError("OMPL asked about a state after the end of the run.")
+    return collision
 
 
 class OmplPlanner(Planner):
@@ -192,15 +224,28 @@ class OmplPlanner(Planner):
         limit = np.inf if budget.checks is None else budget.checks
         problem = Problem(scene, query, self._build, limit, began + wall_s)
         if not problem.ends_are_free():
-            return Plan(PlanStatus.INFEASIBLE, checks=problem.collision.checks)
+            return Plan(PlanStatus.INFEASIBLE, checks=0)
         path = self._run(problem, recorder)
         details = {"state_checks": float(problem.collision.state_checks), **self._measures(problem)}
         checks = problem.collision.checks
         if path is None:
-            return Plan(PlanStatus.EXHAUSTED, checks=checks, details=details)
-        length = path_length(path)
-        recorder.improved(length, checks=checks)
-        return Plan(PlanStatus.SOLVED, path, claimed_cost=length, checks=checks, details=details)
+            return Plan(
+                PlanStatus.EXHAUSTED,
+                generations=self._iterations(problem),
+                checks=checks,
+                details=details,
+            )
+        return Plan(
+            PlanStatus.SOLVED,
+            path,
+            claimed_cost=path_length(path),
+            generations=self._iterations(problem),
+            generation_of_best=recorder.improvements[-1].generation
+            if recorder.improvements
+            else None,
+            checks=checks,
+            details=details,
+        )
 
     def _build(self, information: Any) -> Any:
         """Build OMPL's planner and hand it the settings that are not None."""
@@ -210,6 +255,10 @@ class OmplPlanner(Planner):
             if value is not None and "setter" in setting.metadata:
                 getattr(planner, setting.metadata["setter"])(value)
         return planner
+
+    def _iterations(self, problem: "Problem") -> int | None:  # noqa: ARG002
+        """Return the number of iterations, where OMPL tells it."""
+        return None
 
     def _measures(self, problem: "Problem") -> dict[str, float]:  # noqa: ARG002
         """Any numbers of the planner's own to keep with the row."""
@@ -241,7 +290,9 @@ class Problem:
         self.information = self._setup.getSpaceInformation()
         self.collision = ExactCollision(self.information, scene, limit)
         self.information.setMotionValidator(self.collision)
-        self._setup.setStateValidityChecker(self.collision.is_free)
+        # OMPL owns this function, and the validator owns a part of OMPL: a cycle would never die.
+        collision = weakref.ref(self.collision)
+        self._setup.setStateValidityChecker(lambda state: _alive(collision).is_free(state))
         self._start, self._goal = self._state(query.start), self._state(query.goal)
         self._setup.setStartAndGoalStates(self._start, self._goal)
         self.planner = build(self.information)
@@ -254,19 +305,25 @@ class Problem:
         return state
 
     def ends_are_free(self) -> bool:
-        return self.collision.is_free(self._start) and self.collision.is_free(self._goal)
+        """Whether start and goal lie in free space; OMPL asks again, and these are not counted."""
+        return self.collision.is_free_point(*self.query.start) and self.collision.is_free_point(
+            *self.query.goal
+        )
 
     def set_up(self) -> None:
+        """Let OMPL choose what was not set, and build the planner's structures."""
         self._setup.setup()
 
     def remaining_s(self) -> float:
+        """Return the seconds of wall time that are left."""
         return self.deadline - time.perf_counter()
 
     def is_over(self) -> bool:
+        """Whether the budget is spent."""
         return self.collision.checks >= self.collision.limit or self.remaining_s() <= 0.0
 
     def path(self) -> NDArray[np.float64] | None:
-        """The best exact solution so far; OMPL's approximate ones end short of the goal."""
+        """Read the best exact solution so far; approximate ones end short of the goal."""
         if not self.definition.hasExactSolution():
             return None
         states = self.definition.getSolutionPath().getStates()
@@ -283,11 +340,6 @@ def _bounds(scene: Scene) -> Any:
         bounds.setLow(axis, low)
         bounds.setHigh(axis, high)
     return bounds
-
-
-def path_length(path: NDArray[np.float64]) -> float:
-    """Length of a path (n, 2), metres."""
-    return float(np.hypot(*np.diff(path, axis=0).T).sum())
 
 
 class RRTstarPlanner(OmplPlanner):
@@ -314,30 +366,38 @@ class RRTstarPlanner(OmplPlanner):
 
         problem.set_up()
         planner.solve(ob.PlannerTerminationCondition(is_over))
+        is_over()  # the last iteration may have found a better path
         return problem.path()
 
-    def _measures(self, problem: Problem) -> dict[str, float]:
-        return {"iterations": float(problem.planner.numIterations())}
+    def _iterations(self, problem: Problem) -> int:
+        return int(problem.planner.numIterations())
+
+
+@dataclass(slots=True)
+class Pause:
+    """Whether growth is paused, so that a roadmap is only searched."""
+
+    is_on: bool = False
 
 
 class PausableSampler(ob.ValidStateSampler):  # type: ignore[misc]
-    """Uniform samples of free space, or none at all while the roadmap is only searched."""
+    """Uniform samples of free space, or none at all during a pause."""
 
-    def __init__(self, information: Any) -> None:
+    def __init__(self, information: Any, pause: Pause) -> None:
         super().__init__(information)
         self._uniform = ob.UniformValidStateSampler(information)
-        self.paused = False
+        self._pause = pause
 
     def sample(self, state: Any) -> bool:
-        """Draw a free state; draws nothing, and no random number, while paused."""
-        if self.paused:
+        """Draw a free state; in a pause draw nothing, and no random number either."""
+        if self._pause.is_on:
             time.sleep(1e-4)  # leave the processor to the thread that searches
             return False
         return bool(self._uniform.sample(state))
 
     def sampleNear(self, state: Any, near: Any, distance: float) -> bool:  # noqa: N802
         """Draw a free state near another."""
-        return not self.paused and bool(self._uniform.sampleNear(state, near, distance))
+        return not self._pause.is_on and bool(self._uniform.sampleNear(state, near, distance))
 
 
 class PRMstarPlanner(OmplPlanner):
@@ -354,21 +414,17 @@ class PRMstarPlanner(OmplPlanner):
     ompl_class: ClassVar[Callable[[Any], Any]] = og.PRMstar
 
     def _run(self, problem: Problem, recorder: Recorder) -> NDArray[np.float64] | None:
-        sampler = PausableSampler(problem.information)
-        problem.information.setValidStateSamplerAllocator(lambda _: sampler)
-        problem.set_up()
-        collision = problem.collision
-        search = _RoadmapSearch(problem, sampler)
+        search = _RoadmapSearch(problem)
         began = time.perf_counter()
-        path = search.shortest(patience_s=0.001)  # this is also what adds start and goal
-        while not problem.is_over():
-            self._grow(problem, time.perf_counter() - began, search.last_s)
-            found = search.shortest(patience_s=30.0 if path is not None else 0.004)
+        path = None
+        while True:
+            found = search.shortest()
             if found is not None:
                 path = found
-                recorder.improved(path_length(path), checks=collision.checks)
-        # The last search of an unsolved run decides its status: give the thread time to be heard.
-        return path if path is not None else search.shortest(patience_s=0.2)
+                recorder.improved(path_length(path), checks=problem.collision.checks)
+            if problem.is_over():
+                return path
+            self._grow(problem, time.perf_counter() - began, search.last_s)
 
     def _grow(self, problem: Problem, elapsed_s: float, search_s: float) -> None:
         """Grow the roadmap until the slice ends: by checks if they are limited, else by time."""
@@ -397,28 +453,74 @@ class _RoadmapSearch:
     last_s : how long the last search took, seconds.
     """
 
-    def __init__(self, problem: Problem, sampler: PausableSampler) -> None:
+    def __init__(self, problem: Problem) -> None:
         self._problem = problem
-        self._sampler = sampler
+        self._pause = pause = Pause()
+        problem.information.setValidStateSamplerAllocator(
+            lambda information: PausableSampler(information, pause)
+        )
+        self._components = _Components()
+        self._is_connected = False
+        self._has_loop = False
         self.last_s = 0.0
+        problem.set_up()
+        problem.collision.free_motions = []
+        self._solve(0.0001)  # adds start and goal to the roadmap
 
-    def shortest(self, patience_s: float) -> NDArray[np.float64] | None:
-        """Shortest path from start to goal in the roadmap as it is; None if none was found.
+    def shortest(self) -> NDArray[np.float64] | None:
+        """Shortest path from start to goal in the roadmap as it is; None if there is none.
 
         OMPL's thread searches only if it starts before ``solve`` ends, which nobody promises; so
-        ``solve`` is called for ever longer, up to ``patience_s`` seconds in all.
+        ``solve`` is called for ever longer until it has.
         """
         began = time.perf_counter()
+        if not self._connects():
+            return None
         definition = self._problem.definition
         # Solutions are kept sorted by a cost that the two threads of earlier calls raced for.
         definition.clearSolutionPaths()
-        self._sampler.paused = True
         wait_s = 0.0005
-        while not definition.hasExactSolution():
-            self._problem.planner.solve(wait_s)
+        while not definition.hasExactSolution() and wait_s < PATIENCE_S:
+            self._solve(wait_s)
             wait_s *= 2.0
-            if time.perf_counter() - began > patience_s:
-                break
-        self._sampler.paused = False
         self.last_s = time.perf_counter() - began
         return self._problem.path()
+
+    def _connects(self) -> bool:
+        """Whether the roadmap connects start and goal: each free motion is one of its edges."""
+        collision, query = self._problem.collision, self._problem.query
+        if not self._is_connected and collision.free_motions is not None:
+            for a, b in collision.free_motions:
+                self._components.join(a, b)
+                self._has_loop = self._has_loop or a == b
+            collision.free_motions = []
+            start, goal = tuple(query.start.tolist()), tuple(query.goal.tolist())
+            self._is_connected = self._components.root(start) == self._components.root(goal)
+            if start == goal:  # two milestones in one place: connected by an edge without length
+                self._is_connected = self._has_loop
+            if self._is_connected:
+                collision.free_motions = None
+        return self._is_connected
+
+    def _solve(self, wait_s: float) -> None:
+        self._pause.is_on = True
+        self._problem.planner.solve(wait_s)
+        self._pause.is_on = False
+
+
+class _Components:
+    """Connected components of points, by union and find (Tarjan 1975)."""
+
+    def __init__(self) -> None:
+        self._parent: dict[Point, Point] = {}
+
+    def root(self, point: Point) -> Point:
+        parent = self._parent
+        above = parent.setdefault(point, point)
+        while above != point:
+            parent[point] = parent[above]
+            point, above = above, parent[above]
+        return point
+
+    def join(self, a: Point, b: Point) -> None:
+        self._parent[self.root(a)] = self.root(b)

@@ -71,6 +71,7 @@ class KBGA:
             settings.penalty,
             settings.repair_candidates,
             settings.improvement_radius,
+            settings.rounds,
         )
         self.population = empty_population(settings.population_size, settings.max_nodes)
         self._children = empty_population(settings.population_size, settings.max_nodes)

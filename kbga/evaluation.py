@@ -37,21 +37,8 @@ def _reach(
     for e in range(first, last):
         px, py = edges[e, 0] - ax, edges[e, 1] - ay
         qx, qy = edges[e, 2] - ax, edges[e, 3] - ay
-        t, h = px * ux + py * uy, py * ux - px * uy
-        s, g = qx * ux + qy * uy, qy * ux - qx * uy
-        if (t < 0.0 and s < 0.0) or (t > span and s > span):
-            continue
-        # Clip the edge to the strip: at most one cut at each side.
-        if t < 0.0:
-            h += (g - h) * (0.0 - t) / (s - t)
-            t = 0.0
-        elif t > span:
-            h += (g - h) * (span - t) / (s - t)
-            t = span
-        if s < 0.0:
-            g = h + (g - h) * (0.0 - t) / (s - t)
-        elif s > span:
-            g = h + (g - h) * (span - t) / (s - t)
+        h = py * ux - px * uy
+        g = qy * ux - qx * uy
         high = max(high, h, g)
         low = min(low, h, g)
     return high, low

@@ -28,6 +28,7 @@ class Rates(NamedTuple):
     penalty: float
     repair_candidates: int
     improvement_radius: int
+    rounds: int
 
 
 @njit(cache=True)
@@ -105,16 +106,18 @@ def _transform(
     """Apply mutation and the specialised operators to a child, by probability and heuristic."""
     if rng.random() < rates.mutation:
         mutate(children, i, problem, rates.penalty, rng, counter)
-    if children.chromosomes[i].infeasible > 0 and rng.random() < rates.repair:
-        repair(
-            children, i, scratch, problem, rates.penalty, rates.repair_candidates, rng, counter
-        )
-    if rng.random() < rates.deletion:
-        delete(children, i, scratch, problem, rates.penalty, rng, counter)
-    if children.chromosomes[i].infeasible == 0 and rng.random() < rates.improvement:
-        improve(
-            children, i, scratch, problem, rates.penalty, rates.improvement_radius, rng, counter
-        )
+    for _ in range(rates.rounds):
+        changed = False
+        if children.chromosomes[i].infeasible > 0 and rng.random() < rates.repair:
+            changed |= repair(
+                children, i, scratch, problem, rates.penalty, rates.repair_candidates, rng, counter
+            )
+        if rng.random() < rates.deletion:
+            changed |= delete(children, i, scratch, problem, rates.penalty, rng, counter)
+        if children.chromosomes[i].infeasible == 0 and rng.random() < rates.improvement:
+            changed |= improve(
+                children, i, scratch, problem, rates.penalty, rates.improvement_radius, rng, counter
+            )
 
 
 @njit(cache=True)

@@ -41,6 +41,7 @@ class KBGASettings:
     penalty: float = 10.0
     repair_candidates: int = 12
     improvement_radius: int = 8
+    rounds: int = 1
     max_generations: int = 500
     stagnation: int = 30
 
@@ -53,6 +54,7 @@ class KBGASettings:
             ("tournament_size", 1),
             ("repair_candidates", 1),
             ("improvement_radius", 1),
+            ("rounds", 1),
             ("max_generations", 1),
             ("stagnation", 1),
         ):

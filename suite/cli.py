@@ -14,6 +14,7 @@ from typing import Annotated, Any
 import typer
 
 from suite.errors import KbgaBenchError
+from suite.quiet import end_quietly
 
 app = typer.Typer(
     name="kbga-bench",
@@ -274,6 +275,7 @@ def results(
 def main() -> None:
     """Run the command; errors that users can mend are one line and exit code 2."""
     warnings.showwarning = _show_warning
+    end_quietly()
     try:
         app()
     except KbgaBenchError as error:

@@ -8,6 +8,7 @@ Dellin and Srinivasa 2016 for lazy edge evaluation). Metres.
 
 import heapq
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numba import njit
@@ -69,8 +70,17 @@ def shortest_path(scene: Scene, query: Query) -> ExactPath:
     if order.size == 0:
         return ExactPath(None, np.inf, int(checks))
     nodes = np.vstack([arrangement.corners[:, :2], query.start, query.goal])
-    path = np.ascontiguousarray(nodes[order])
+    path = np.ascontiguousarray(nodes[_bends(nodes, order)])
     return ExactPath(path, path_length(path), int(checks))
+
+
+def _bends(nodes: NDArray[np.float64], order: NDArray[np.int64]) -> list[int]:
+    """A path's nodes without those that it passes straight on, or in which it starts or ends."""
+    kept = [int(order[0])]
+    for node, after in pairwise(order[1:].tolist()):
+        if orientation(*nodes[kept[-1]], *nodes[node], *nodes[after]) != 0:
+            kept.append(node)
+    return [*kept, int(order[-1])]
 
 
 def path_length(path: NDArray[np.float64]) -> float:
@@ -88,21 +98,31 @@ def _is_tangent(px: float, py: float, corners: np.ndarray, i: int) -> bool:
 
 
 @njit(cache=True)
-def _turns_around(px: float, py: float, corners: np.ndarray, i: int, qx: float, qy: float) -> bool:
-    """Whether the path p -> corner i -> q, tangent on both sides, is taut: bends around solid.
+def _solid_side(px: float, py: float, corners: np.ndarray, i: int) -> int:
+    """Side of a tangent line p -> corner i on which the corner's solid lies: 1 left, -1 right."""
+    x, y = corners[i, 0], corners[i, 1]
+    side = orientation(px, py, x, y, corners[i, 2], corners[i, 3])
+    return side if side != 0 else orientation(px, py, x, y, corners[i, 4], corners[i, 5])
+
+
+@njit(cache=True)
+def _turns_around(
+    px: float, py: float, side: int, corners: np.ndarray, i: int, qx: float, qy: float
+) -> bool:
+    """Whether the path p -> corner i -> q, tangent at its bend, is taut: bends around solid.
 
     Straight on is allowed, exactly: rounding here would prune collinear routes.
     """
     x, y = corners[i, 0], corners[i, 1]
     turn = orientation(px, py, x, y, qx, qy)
+    if turn == -side:
+        return False
     if turn == 0:
-        return (x - px) * (qx - x) + (y - py) * (qy - y) >= 0.0
-    for j in (2, 4):
-        if orientation(px, py, x, y, corners[i, j], corners[i, j + 1]) == -turn:
-            return False
-        if orientation(x, y, qx, qy, corners[i, j], corners[i, j + 1]) == -turn:
-            return False
-    return True
+        return (x - px) * (qx - x) + (y - py) * (qy - y) > 0.0
+    return (
+        orientation(x, y, qx, qy, corners[i, 2], corners[i, 3]) != -side
+        and orientation(x, y, qx, qy, corners[i, 4], corners[i, 5]) != -side
+    )
 
 
 @njit(cache=True)
@@ -119,38 +139,40 @@ def _search(
     xy[:n] = corners[:, :2]
     xy[start, 0], xy[start, 1] = sx, sy
     xy[goal, 0], xy[goal, 1] = gx, gy
+    to_goal = np.sqrt((xy[:, 0] - gx) ** 2 + (xy[:, 1] - gy) ** 2)
     parent = np.full(n + 2, -1, dtype=np.int64)
     closed = np.zeros(n + 2, dtype=np.bool_)
-    # Cheapest edge queued into each node: a dearer one from elsewhere may still be the free one,
-    # so all are queued; a node closes when its first free edge comes off.
-    queue = [(np.hypot(gx - sx, gy - sy), 0.0, start, start)]
+    # Several edges into a node may be queued, for the cheapest of them need not be free; a node
+    # closes when its first free edge comes off.
+    queue = [(to_goal[start], 0.0, start, start)]
     checks = 0
     while len(queue) > 0:
         _, cost, tail, node = heapq.heappop(queue)
         if closed[node]:
             continue
         x, y = xy[node, 0], xy[node, 1]
+        px, py = xy[tail, 0], xy[tail, 1]
+        side = 0
         if node != start:
             checks += 1
-            if segment_enters(xy[tail, 0], xy[tail, 1], x, y, arrays):
+            if segment_enters(px, py, x, y, arrays):
                 continue
         closed[node] = True
         parent[node] = tail
         if node == goal:
             return _trace_back(parent, start, goal), checks
-        px, py = xy[tail, 0], xy[tail, 1]
+        if node != start:
+            side = _solid_side(px, py, corners, node)
         for other in range(n + 2):
-            if closed[other] or other == start:
+            if closed[other]:
                 continue
             qx, qy = xy[other, 0], xy[other, 1]
-            if node != start and not (
-                _is_tangent(qx, qy, corners, node) and _turns_around(px, py, corners, node, qx, qy)
-            ):
+            if node != start and not _turns_around(px, py, side, corners, node, qx, qy):
                 continue
-            if other != goal and not _is_tangent(x, y, corners, other):
+            if other != goal and ((x == qx and y == qy) or not _is_tangent(x, y, corners, other)):
                 continue
-            g = cost + np.hypot(qx - x, qy - y)
-            heapq.heappush(queue, (g + np.hypot(gx - qx, gy - qy), g, node, other))
+            g = cost + np.sqrt((qx - x) ** 2 + (qy - y) ** 2)
+            heapq.heappush(queue, (g + to_goal[other], g, node, other))
     return np.empty(0, dtype=np.int64), checks
 
 

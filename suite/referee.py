@@ -5,6 +5,9 @@ that the planners use themselves. Free space has the suite's one meaning: a path
 is a limit of paths that keep a positive clearance. So touching an obstacle is free, entering it is
 not, and a passage of zero width (a seam, a slit along the border, a pinch point) is closed.
 Metres, x right, y up.
+
+GEOS, under shapely, rounds the points in which lines cross: an entry as shallow as that rounding
+(1e-16 m) may go unseen. The kernels, which are exact, never call free what the referee rejects.
 """
 
 from dataclasses import dataclass

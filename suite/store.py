@@ -22,6 +22,8 @@ from suite.record import Cell, RunRecord, canonical_json
 
 APPLICATION_ID = 0x4B424741  # "KBGA"
 SCHEMA_VERSION = 1
+BUSY_S = 10.0
+"""How long to wait for another process that writes."""
 
 SCHEMA = """
 CREATE TABLE sessions (
@@ -265,8 +267,8 @@ def _make_folder(path: Path) -> None:
 def _connect(path: Path, *, writable: bool) -> sqlite3.Connection:
     with _explained(path):
         if writable:
-            return sqlite3.connect(path, timeout=10.0)
-        return sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=10.0)
+            return sqlite3.connect(path, timeout=BUSY_S)
+        return sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=BUSY_S)
 
 
 def _open_for_reading(path: Path) -> sqlite3.Connection:

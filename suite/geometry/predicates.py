@@ -74,16 +74,8 @@ def _subtraction_is_exact(a: float, b: float) -> bool:
 
 
 @njit(cache=True)
-def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
-    """Side of the directed line a -> b on which c lies: 1 left, -1 right, 0 exactly on it."""
-    left = (ax - cx) * (by - cy)
-    right = (ay - cy) * (bx - cx)
-    determinant = left - right
-    bound = _ERROR_BOUND * (abs(left) + abs(right))
-    if determinant > bound:
-        return 1
-    if -determinant > bound:
-        return -1
+def _sign_in_doubt(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
+    """Exact sign where the filter fails; on its own, so that the compiler inlines the filter."""
     if (
         _subtraction_is_exact(ax, cx)
         and _subtraction_is_exact(by, cy)
@@ -97,3 +89,17 @@ def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float
             left_high, right_high = left_low, right_low
         return int(left_high > right_high) - int(left_high < right_high)
     return _exact_sign(ax, ay, bx, by, cx, cy)
+
+
+@njit(cache=True)
+def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
+    """Side of the directed line a -> b on which c lies: 1 left, -1 right, 0 exactly on it."""
+    left = (ax - cx) * (by - cy)
+    right = (ay - cy) * (bx - cx)
+    determinant = left - right
+    bound = _ERROR_BOUND * (abs(left) + abs(right))
+    if determinant > bound:
+        return 1
+    if -determinant > bound:
+        return -1
+    return _sign_in_doubt(ax, ay, bx, by, cx, cy)

@@ -31,7 +31,7 @@ class Display:
         self._console = console or Console(stderr=True)
         self._bar: Bar | None = None
         self._last_line = -LINE_EVERY_S
-        self._shown_failures = 0
+        self._shown_failures: set[tuple[str, str]] = set()
 
     def __enter__(self) -> Self:
         if self._console.is_terminal:
@@ -73,14 +73,17 @@ class Display:
             self._show_line(progress)
 
     def _show_failure(self, progress: Progress) -> None:
+        """Name the first failure of each kind; the count, and the store, have them all."""
         record = progress.last
-        if record is None or progress.failed == self._shown_failures:
+        if record is None or record.status not in FAILURES:
             return
-        self._shown_failures = progress.failed
-        if record.status in FAILURES:
-            reason = (record.reason or "").strip().splitlines()
-            text = f"{record.cell.label}: {record.status}: {reason[-1] if reason else ''}"
-            self._console.print(text, style="red", markup=False, highlight=False, soft_wrap=True)
+        reason = (record.reason or "").strip().splitlines()
+        what = f"{record.status}: {reason[-1] if reason else ''}"
+        if (record.cell.variant, what) in self._shown_failures:
+            return
+        self._shown_failures.add((record.cell.variant, what))
+        text = f"{record.cell.label}: {what}"
+        self._console.print(text, style="red", markup=False, highlight=False, soft_wrap=True)
 
     def _show_line(self, progress: Progress) -> None:
         now = time.monotonic()

@@ -285,7 +285,7 @@ def _built(kind: Any, table: Reader) -> Any:
     try:
         return kind(**table.values)
     except ContractError as error:
-        raise table.error(str(error)) from error
+        raise table.error(str(error).removeprefix("budget: ")) from error
 
 
 def _refuse_twins(reader: Reader, what: str, names: Sequence[Any]) -> None:

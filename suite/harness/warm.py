@@ -22,6 +22,7 @@ from importlib.machinery import ModuleSpec
 from typing import Any
 
 from suite.harness.cell import build_planner, exact_optimum, prepared_scene, referee
+from suite.quiet import end_quietly
 
 VARIABLE = "KBGA_BENCH_WARM"
 
@@ -62,6 +63,7 @@ class Warmth:
 
 def warm(wanted: Mapping[str, Any]) -> None:
     """Make ready what a :class:`Warmth`, as plain data, asks for."""
+    end_quietly()
     _stand_in_for_main(*wanted["main"])
     for source, query in wanted["queries"]:
         # A scene that can't be loaded is reported by the runs that want it.

@@ -39,7 +39,7 @@ LINES = (
 )
 
 WIDTH = 6.0
-LEGEND_HEIGHT = 1.3
+LEGEND_HEIGHT = 1.0
 RASTER_DPI = 150
 
 
@@ -95,7 +95,7 @@ def plot_run(
 def plot_scene_results(
     scene: Scene,
     query: Query,
-    best: Mapping[str, NDArray[np.float64]],
+    best: Mapping[str, NDArray[np.float64] | None],
     *,
     labels: Mapping[str, str] | None = None,
 ) -> Figure:
@@ -106,7 +106,8 @@ def plot_scene_results(
     scene : Scene
     query : Query
     best : mapping from planner to path (n, 2), metres
-        Later ones are drawn above earlier ones, and thinner.
+        Later ones are drawn above earlier ones, and thinner. A planner without a path has None,
+        and a line in the legend.
     labels : mapping from planner to its text in the legend, optional
 
     Returns
@@ -114,13 +115,14 @@ def plot_scene_results(
     Figure
     """
     figure, axes = _scene_figure(scene)
-    widths = np.linspace(4.2, 1.2, max(len(best), 2))
+    widths = np.linspace(4.0, 1.2, max(len(best), 2))
     for i, (planner, path) in enumerate(best.items()):
         colour, style = LINES[i % len(LINES)]
         label = (labels or {}).get(planner, planner)
-        axes.plot(
-            *path.T, color=colour, linestyle=style, linewidth=widths[i], label=label, alpha=0.9
-        )
+        if path is None:
+            axes.plot([], [], linestyle="none", label=label)
+        else:
+            axes.plot(*path.T, color=colour, linestyle=style, linewidth=widths[i], label=label)
     _finish(figure, axes, query, scene.name)
     return figure
 

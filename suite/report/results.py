@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from suite.errors import KbgaBenchError, StoreError
-from suite.exact import shortest_path
 from suite.report.export import export_rows, made_folder
 from suite.report.figures import plot_scene_results, save
 from suite.report.summary import feasible
@@ -95,23 +96,31 @@ def _write_figures(
     files = []
     for scene, query in scenes:
         here = runs[(runs["scene"] == scene.name) & (runs["query"] == query.name)]
-        best, labels = {}, {}
-        solved = feasible(here)
-        for variant in here["variant"].unique():
-            group = solved[solved["variant"] == variant]
-            share = f"{len(group)} of {(here['variant'] == variant).sum()}"
-            if len(group):
-                row = group.loc[group["cost"].idxmin()]
-                best[variant] = paths[row["key"]]
-                labels[variant] = f"{variant}: {row['cost']:.2f} m ({share})"
+        best, labels = _best_paths(here, paths)
         several = len(scene.queries) > 1
         file = folder / (f"{scene.name}-{query.name}.png" if several else f"{scene.name}.png")
-        exact = shortest_path(scene, query)
-        if exact.path is not None and not best:
-            best, labels = {"optimum": exact.path}, {"optimum": f"optimum: {exact.length:.2f} m"}
         save(plot_scene_results(scene, query, best, labels=labels), file)
         files.append(file)
     return files
+
+
+def _best_paths(
+    runs: pd.DataFrame, paths: dict[str, Any]
+) -> tuple[dict[str, NDArray[np.float64] | None], dict[str, str]]:
+    """The cheapest path of each planner in the runs of one query, and its line in the legend."""
+    best: dict[str, NDArray[np.float64] | None] = {}
+    labels = {}
+    for variant, group in runs.groupby("variant", sort=False):
+        name, solved = str(variant), feasible(group)
+        share = f"{len(solved)} of {len(group)} runs"
+        if len(solved):
+            row = solved.sort_values("cost", kind="stable").iloc[0]
+            best[name] = paths[row["key"]]
+            labels[name] = f"{name}: {row['cost']:.2f} m ({share})"
+        else:
+            best[name] = None
+            labels[name] = f"{name}: no path ({share})"
+    return best, labels
 
 
 def _manifest(

@@ -11,7 +11,7 @@ from typing import Any
 import pandas as pd
 from tabulate import tabulate
 
-HEADER_WIDTH = 12
+HEADER_WIDTH = 9
 NOTE_WIDTH = 100
 
 
@@ -62,7 +62,9 @@ def _csv(table: Table) -> str:
 
 def _plain(table: Table) -> str:
     # Headers are broken into lines: numbers are narrower than their names.
-    headers = [textwrap.fill(str(c), HEADER_WIDTH) for c in table.frame.columns]
+    headers = [
+        textwrap.fill(str(c), HEADER_WIDTH, break_long_words=False) for c in table.frame.columns
+    ]
     note = textwrap.fill(table.note, NOTE_WIDTH)
     return f"{table.title}\n\n{_grid(table, 'simple', headers)}\n{_below(note)}"
 

@@ -1,4 +1,4 @@
-"""Scenes that can't be used are refused with what, where and how to mend; the others keep together."""
+"""Bad scenes are refused with what, where and how to mend; good ones keep together."""
 
 import pickle
 
@@ -46,9 +46,9 @@ def test_a_ring_that_runs_back_on_itself_is_refused_with_the_place():
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 1e300])
 def test_coordinates_that_are_no_finite_metres_are_refused(bad):
-    with pytest.raises(SceneError, match="obstacle 1: vertex 2 is .*must be finite"):
+    with pytest.raises(SceneError, match=r"obstacle 1: vertex 2 is .*must be finite"):
         scene_of(Polygon([(1, 1), (2, bad), (2, 2)]))
-    with pytest.raises(SceneError, match="start of query 'main': .*must be finite"):
+    with pytest.raises(SceneError, match=r"start of query 'main': .*must be finite"):
         scene_of(queries={"main": ((bad, 1), (2, 2))})
 
 
@@ -194,7 +194,7 @@ def test_several_queries_are_found_by_name():
     scene = scene_of(queries={"a": ((1, 1), (2, 2)), "b": ((3, 3), (4, 4))})
     assert scene.query().name == "a"
     assert scene.query("b").goal.tolist() == [4, 4]
-    with pytest.raises(SceneError, match="no query 'c'. It has: a, b"):
+    with pytest.raises(SceneError, match=r"no query 'c'\. It has: a, b"):
         scene.query("c")
 
 

@@ -1,0 +1,85 @@
+"""KBGA behind the plugin interface of ``suite.planner``."""
+
+from typing import ClassVar
+
+import numpy as np
+import shapely
+
+from kbga.algorithm import KBGA
+from kbga.settings import KBGASettings
+from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
+from suite.scene import Query, Scene, make_scene
+
+
+class KBGAPlanner(Planner):
+    """The knowledge-based genetic algorithm of Hu and Yang."""
+
+    name = "kbga"
+    Settings = KBGASettings
+    abilities: ClassVar[Abilities] = Abilities(
+        anytime=True, budgets=frozenset({"wall_s", "generations", "checks"})
+    )
+
+    def plan(
+        self,
+        scene: Scene,
+        query: Query,
+        budget: Budget,
+        rng: np.random.Generator,
+        recorder: Recorder,
+    ) -> Plan:
+        """Evolve until a stop criterion of the settings or the budget ends the run.
+
+        The trace has a row per generation: best, mean, feasible_share, diversity and checks.
+        A budget that ends within a generation ends the run after it.
+        """
+
+        def follow(ga: KBGA, improved: bool) -> bool:
+            if improved:
+                recorder.improved(ga.best_cost, generation=ga.generation, checks=ga.checks)
+            report = ga.report()
+            recorder.describe_generation(
+                {
+                    "generation": report.generation,
+                    "best": report.best,
+                    "mean": report.mean,
+                    "feasible_share": report.feasible_share,
+                    "diversity": report.diversity,
+                    "checks": report.checks,
+                }
+            )
+            return within(budget, ga, recorder)
+
+        ga = KBGA(scene, query, self.settings, rng)
+        recorder.snapshot("first population", ga.paths() if recorder.keep_snapshots else [])
+        path = ga.run(follow)
+        return Plan(
+            PlanStatus.EXHAUSTED if path is None else PlanStatus.SOLVED,
+            path,
+            claimed_cost=None if path is None else ga.best_cost,
+            generations=ga.generation,
+            generation_of_best=None if path is None else ga.generation_of_best,
+            checks=ga.checks,
+        )
+
+    def warm_up(self) -> None:
+        """Compile the kernels, or load them, on a scene that makes every operator work."""
+        scene = make_scene(
+            "warm-up",
+            shapely.box(0.0, 0.0, 10.0, 10.0),
+            [shapely.box(4.0, 0.0, 6.0, 8.0)],
+            {"main": ((1.0, 1.0), (9.0, 1.0))},
+        )
+        settings = KBGASettings(resolution=10, population_size=10, max_generations=10)
+        KBGA(scene, scene.query(), settings, np.random.default_rng(0)).run(
+            lambda ga, _: ga.report().generation < 10
+        )
+
+
+def within(budget: Budget, ga: KBGA, recorder: Recorder) -> bool:
+    """Whether the budget allows another generation."""
+    return (
+        (budget.generations is None or ga.generation < budget.generations)
+        and (budget.checks is None or ga.checks < budget.checks)
+        and (budget.wall_s is None or recorder.wall_s() < budget.wall_s)
+    )

@@ -1,0 +1,96 @@
+import os
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import psutil
+import pytest
+
+from suite.harness.isolate import run_isolated
+from suite.harness.matrix import Limits
+from suite.harness.single import cell_for
+from suite.harness.warm import Warmth
+from suite.planner import PlanStatus
+
+SHORT = Limits(wall_s=0.5, warm_up_s=10.0)
+
+
+@pytest.fixture
+def run(hostile, wall_file):
+    def run_planner(name, seed=0, limits=SHORT):
+        return run_isolated(cell_for(str(wall_file), name, seed=seed), limits, Warmth())
+
+    return run_planner
+
+
+def test_a_run_comes_back_whole(run):
+    record = run("wanderer")
+    assert record.status is PlanStatus.SOLVED
+    assert len(record.improvements) == 2
+    assert record.path.shape[1] == 2
+    assert record.stderr == ""
+
+
+def test_another_process_finds_the_same_path(run):
+    np.testing.assert_array_equal(run("wanderer").path, run("wanderer").path)
+
+
+@pytest.mark.parametrize(
+    ("planner", "status", "reason"),
+    [
+        ("raises", PlanStatus.ERROR, "no luck today"),
+        ("exits", PlanStatus.CRASHED, "ended with exit code 3"),
+        ("segfaults", PlanStatus.CRASHED, "was ended by SIGSEGV"),
+        ("hangs", PlanStatus.TIMED_OUT, "plan took more than 0.5 s"),
+        ("hangs-in-c", PlanStatus.TIMED_OUT, "plan took more than 0.5 s"),
+        ("exits-in-warm-up", PlanStatus.CRASHED, "ended with exit code 4"),
+        ("prints", PlanStatus.SOLVED, None),
+        ("cheats", PlanStatus.INVALID, "enters obstacle 1"),
+    ],
+)
+def test_whatever_a_planner_does_is_one_row(run, planner, status, reason):
+    record = run(planner)
+    assert record.status is status
+    assert reason is None or reason in record.reason
+
+
+def test_warming_up_has_a_limit_of_its_own(run):
+    record = run("hangs-in-warm-up", limits=Limits(warm_up_s=0.5))
+    assert record.status is PlanStatus.TIMED_OUT
+    assert record.reason.startswith("warm-up took more than 0.5 s")
+
+
+def test_the_last_words_of_a_crashed_process_are_kept(run):
+    assert run("exits").stderr == "going down"
+
+
+def test_a_process_that_a_planner_leaves_behind_is_killed(run):
+    before = {p.pid for p in psutil.process_iter()}
+    assert run("forks").status is PlanStatus.SOLVED
+    time.sleep(0.2)
+    new = [p for p in psutil.process_iter(["cmdline"]) if p.pid not in before]
+    mine = [p for p in new if "forkserver" in " ".join(p.info["cmdline"] or [])]
+    running = [p for p in mine if p.status() != psutil.STATUS_ZOMBIE and p.ppid() == 1]
+    assert not running
+
+
+def test_a_planner_that_draws_from_the_global_generator_gets_another_stream_in_each_run(run):
+    one, again, other = run("careless", seed=1), run("careless", seed=1), run("careless", seed=2)
+    np.testing.assert_array_equal(one.path, again.path)
+    assert not np.array_equal(one.path, other.path)
+
+
+def test_runs_leave_the_environment_and_the_folder_of_the_harness_alone(run):
+    before = dict(os.environ), os.getcwd()  # noqa: PTH109
+    run("wanderer")
+    assert (dict(os.environ), os.getcwd()) == before  # noqa: PTH109
+
+
+def test_many_threads_may_wait_for_many_processes(run):
+    planners = ["wanderer", "exits", "segfaults", "raises"] * 5
+    with ThreadPoolExecutor(8) as threads:
+        records = list(threads.map(run, planners))
+    wanted = {"wanderer": "solved", "exits": "crashed", "segfaults": "crashed", "raises": "error"}
+    assert [str(r.status) for r in records] == [wanted[p] for p in planners]
+    codes = {r.reason for p, r in zip(planners, records, strict=True) if p == "exits"}
+    assert codes == {"the process ended with exit code 3."}

@@ -1,0 +1,149 @@
+import textwrap
+
+import pytest
+
+from suite.errors import MatrixError
+from suite.harness.matrix import Limits, load_matrix, matrix_names
+from suite.planner import Budget
+
+GOOD = """
+name = "walls"
+description = "for tests"
+scenes = ["zigzag"]
+seeds = 3
+
+[limits]
+grace_s = 2
+
+[[planner]]
+planner = "visibility-graph"
+
+[[planner]]
+name = "again"
+planner = "visibility-graph"
+budget = { generations = 10, wall_s = 1 }
+"""
+
+
+@pytest.fixture
+def written(tmp_path):
+    def write(text):
+        file = tmp_path / "walls.toml"
+        file.write_text(textwrap.dedent(text))
+        return file
+
+    return write
+
+
+def refused(file):
+    with pytest.raises(MatrixError) as caught:
+        load_matrix(file)
+    return str(caught.value)
+
+
+def test_a_matrix_expands_scene_by_scene_variant_by_variant_seed_by_seed(written):
+    matrix = load_matrix(written(GOOD))
+    cells = matrix.cells()
+    assert [(c.variant, c.seed) for c in cells] == [
+        (variant, seed) for variant in ("visibility-graph", "again") for seed in range(3)
+    ]
+    assert [c.position for c in cells] == list(range(6))
+    assert cells[3].budget == Budget(wall_s=1.0, generations=10)
+    assert cells[0].distribution == "kbga-bench"
+    assert len({c.key for c in cells}) == 6
+    assert matrix.limits == Limits(grace_s=2)
+    assert matrix.limits.plan_s(cells[3].budget) == 1.5 * 1 + 2
+
+
+def test_quick_takes_the_first_two_seeds_of_the_same_cells(written):
+    matrix = load_matrix(written(GOOD))
+    quick = matrix.cells(quick=True)
+    assert [c.seed for c in quick] == [0, 1, 0, 1]
+    assert {c.key for c in quick} < {c.key for c in matrix.cells()}
+
+
+def test_scenes_may_be_files_beside_the_matrix(written, wall_file, tmp_path):
+    (tmp_path / "my.geojson").write_text(wall_file.read_text())
+    matrix = load_matrix(written(GOOD.replace('"zigzag"', '"my.geojson", "maze"')))
+    assert [s.name for s in matrix.scenes] == ["wall", "maze"]
+    assert matrix.sources == (str(tmp_path / "my.geojson"), "maze")
+
+
+def test_a_list_of_seeds_is_taken_as_it_is(written):
+    matrix = load_matrix(written(GOOD.replace("seeds = 3", "seeds = [5, 2]")))
+    assert matrix.seeds == (5, 2)
+
+
+def test_the_paper_matrix_is_in_the_catalogue():
+    assert "paper-static" in matrix_names()
+
+
+def test_settings_are_completed_with_defaults_so_that_keys_do_not_depend_on_how_they_are_written(
+    written, hostile
+):
+    text = GOOD.replace('"visibility-graph"', '"wanderer"', 1)
+    implicit = load_matrix(written(text)).cells()[0]
+    explicit = load_matrix(
+        written(text.replace('"wanderer"', '"wanderer"\nsettings = {reach = 1}'))
+    ).cells()[0]
+    assert implicit.settings == {"reach": 1.0}
+    assert implicit.key == explicit.key
+
+
+def test_a_plugin_that_cannot_be_imported_is_no_reason_to_refuse_the_matrix(written, hostile):
+    matrix = load_matrix(written(GOOD.replace('"visibility-graph"', '"broken"', 1)))
+    assert not matrix.variants[0].plugin.available
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("seeds = 3", "seeds = ", "walls.toml: not TOML"),
+        ("seeds = 3", "seeds = 0", "seeds is 0. Give 1 or more."),
+        ("seeds = 3", "seeds = true", "seeds is True"),
+        ("seeds = 3", "seeds = []", "seeds is empty"),
+        ("seeds = 3", "seeds = [1, -1]", "-1 is no seed"),
+        ("seeds = 3", "seeds = [1, 1]", "two seeds are named '1'"),
+        ("seeds = 3", "", "'seeds' is missing"),
+        ("seeds = 3", "sedes = 3", "unknown key 'sedes'"),
+        ("seeds = 3", "seeds = 3\nseedz = 3", "Did you mean 'seeds'?"),
+        ('["zigzag"]', "[]", "scenes is []"),
+        ('["zigzag"]', '["zigzga"]', "Did you mean 'zigzag'?"),
+        ('["zigzag"]', '["zigzag", "zigzag"]', "two scenes are named 'zigzag'"),
+        ('["zigzag"]', '["nowhere.geojson"]', "nowhere.geojson: can't be read"),
+        ("grace_s = 2", "grace_s = 0", "walls.toml, limits: grace_s is 0. It must be above 0."),
+        ("grace_s = 2", 'grace_s = "2"', "grace_s is '2'. Give a number."),
+        ("grace_s = 2", "grace = 2", "Did you mean 'grace_s'?"),
+        ('"visibility-graph"', '"visibility-grap"', "Did you mean 'visibility-graph'?"),
+        ('"visibility-graph"', '""', "planner 1: planner is ''"),
+        ('name = "again"', "", "two planners are named 'visibility-graph'"),
+        ('name = "again"', 'nam = "again"', "Did you mean 'name'?"),
+        (
+            "generations = 10",
+            "generations = 0",
+            "planner 'again', budget: generations is 0",
+        ),
+        ("generations = 10", "generations = 1.5", "generations is 1.5. Give a whole number."),
+        ("generations = 10", "genertions = 10", "Did you mean 'generations'?"),
+        (
+            "budget = {",
+            "settings = { x = 1 }\nbudget = {",
+            "planner 'again': settings: visibility-graph: no setting 'x'",
+        ),
+        ("[[planner]]", "[planner]", "not TOML"),
+    ],
+)
+def test_a_bad_matrix_is_refused_with_what_where_and_how_to_mend(written, old, new, message):
+    assert old in GOOD
+    assert message in refused(written(GOOD.replace(old, new, 1)))
+
+
+def test_a_matrix_without_planners_is_refused(written):
+    text = GOOD[: GOOD.index("[[planner]]")]
+    assert "'planner' is missing: give at least one [[planner]]." in refused(written(text))
+    assert "no array of tables" in refused(written(text + '[planner]\nplanner = "kbga"\n'))
+
+
+def test_an_unknown_matrix_is_refused_with_the_names_that_there_are():
+    with pytest.raises(MatrixError, match=r"no matrix 'nonsense'.*paper-static"):
+        load_matrix("nonsense")

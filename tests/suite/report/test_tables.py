@@ -1,0 +1,188 @@
+import statistics
+
+import pandas as pd
+import pytest
+
+from suite.planner import PlanStatus
+from suite.report.paper_tables import ablation, paper_static, paper_table_1, paper_tables
+from suite.report.summary import summary
+from suite.report.table import Format, Table, render
+from suite.report.tables import all_tables
+from suite.store import open_store, read_runs
+from tests.suite.harness.records import make_cell, make_record
+
+WITHOUT = "kbga-without-crossover-and-mutation"
+
+
+@pytest.fixture
+def runs_of(tmp_path):
+    """Rows as the store gives them, of records made by hand."""
+
+    def read(*records):
+        with open_store(tmp_path / "s.db") as store:
+            store.begin_session({})
+            for record in records:
+                store.add(record)
+        return read_runs(tmp_path / "s.db")
+
+    return read
+
+
+def solved(cost, *, seed=0, scene="zigzag", variant="kbga", **changes):
+    cell = make_cell(scene=scene, variant=variant, seed=seed)
+    return make_record(cell, cost=cost, gap=cost / 100.0 - 1.0, **changes)
+
+
+def exhausted(*, seed=0, scene="zigzag", variant="plain-ga", **changes):
+    nothing = dict.fromkeys(("cost", "gap", "time_to_best_s", "cpu_to_best_s"))
+    return make_record(
+        make_cell(scene=scene, variant=variant, seed=seed),
+        status=PlanStatus.EXHAUSTED,
+        **nothing | changes,
+    )
+
+
+def test_means_and_deviations_are_over_solved_runs_only(runs_of):
+    costs = [110.0, 120.0, 160.0]
+    frame = summary(
+        runs_of(
+            *(solved(cost, seed=i, generation_of_best=10 * i) for i, cost in enumerate(costs)),
+            exhausted(seed=3, variant="kbga", generation_of_best=1000),
+        )
+    )
+    (row,) = frame.to_dict("records")
+    assert (row["scene"], row["planner"], row["runs"], row["solved"]) == ("zigzag", "kbga", 4, 3)
+    assert row["success (%)"] == 75.0
+    assert row["cost best"] == 110.0
+    assert row["cost mean"] == pytest.approx(statistics.mean(costs))
+    assert row["cost SD"] == pytest.approx(statistics.stdev(costs))
+    assert row["gap mean (%)"] == pytest.approx(30.0)
+    assert row["gen to best mean"] == pytest.approx(10.0)
+    assert row["time to best mean (ms)"] == pytest.approx(30.0)
+    assert row["time total mean (ms)"] == pytest.approx(50.0)
+    assert row["otherwise"] == "1 exhausted"
+
+
+def test_a_proof_that_there_is_no_path_is_a_success_without_a_cost(runs_of):
+    frame = summary(runs_of(exhausted().__class__(make_cell(), PlanStatus.INFEASIBLE)))
+    assert frame["success (%)"].tolist() == [100.0]
+    assert frame["cost mean"].isna().all()
+
+
+def test_one_run_has_no_deviation(runs_of):
+    assert summary(runs_of(solved(110.0)))["cost SD"].isna().all()
+
+
+def test_an_empty_store_has_an_empty_summary(runs_of):
+    assert summary(runs_of()).empty
+    assert len(all_tables(runs_of())) == 1
+
+
+def table_1(runs_of):
+    runs = runs_of(
+        solved(156.0, seed=0),
+        solved(158.0, seed=1),
+        solved(300.0, seed=0, variant="plain-ga", claimed_cost=300.0),
+        exhausted(seed=1, claimed_cost=500.0),
+    )
+    return paper_table_1(runs).set_index(["quantity", "statistic"])
+
+
+def test_table_1_has_the_paper_beside_ours(runs_of):
+    frame = table_1(runs_of)
+    cost = frame.loc[("best found path cost", "mean")]
+    assert cost.tolist() == [156.31, 157.0, 352.35, 300.0]
+    sd = frame.loc[("best found path cost", "sd")]
+    assert (sd["paper with"], sd["paper without"]) == (0.47, 42.36)
+    assert sd["ours with"] == pytest.approx(statistics.stdev([156.0, 158.0]))
+    generations = frame.loc[("generations needed", "mean")]
+    assert (generations["paper with"], generations["paper without"]) == (52.0, 346.0)
+
+
+def test_table_1_counts_feasible_runs_and_shows_penalised_costs_apart(runs_of):
+    frame = table_1(runs_of)
+    assert frame.loc[("feasible runs", ""), "ours without"] == 1
+    assert frame.loc[("number of runs", ""), "ours without"] == 2
+    assert frame.loc[("cost, penalties included", "mean"), "ours without"] == 400.0
+
+
+def test_static_results_show_both_of_the_papers_contradicting_deviations(runs_of):
+    frame = paper_static(runs_of(solved(156.0), solved(157.0, seed=1)))
+    cost = frame[frame["quantity"] == "cost"]
+    assert cost["paper SD"].tolist() == [1.99, 0.47]
+    assert cost["paper's place"].tolist() == ["section III-B", "Table 1"]
+    assert cost["ours mean"].tolist() == [156.5, 156.5]
+    assert cost["paper best"].tolist() == [155.89, 155.89]
+    assert cost["feasible"].tolist() == ["2 of 2", "2 of 2"]
+    times = frame[frame["quantity"] == "time needed (s)"]
+    assert times["paper SD"].tolist() == [1.37, 0.77]
+
+
+def test_static_results_of_clustered_and_of_the_numbers_of_obstacles(runs_of):
+    frame = paper_static(
+        runs_of(solved(160.0, scene="clustered"), solved(120.0, scene="obstacles_30"))
+    )
+    cost = frame[(frame["scene"] == "clustered") & (frame["quantity"] == "cost")]
+    assert cost["paper best"].tolist() == [160.50]
+    assert cost["paper mean"].isna().all()
+    time = frame[(frame["scene"] == "obstacles_30") & (frame["quantity"] == "time needed (s)")]
+    assert time["paper mean"].tolist() == [11.54]
+
+
+def test_the_ablation_says_where_the_paper_never_found_a_path(runs_of):
+    frame = ablation(
+        runs_of(
+            solved(250.0, variant=WITHOUT),
+            exhausted(scene="maze", variant=WITHOUT),
+            exhausted(scene="maze"),
+            solved(131.0, scene="obstacles_40", variant=WITHOUT),
+        )
+    ).set_index(["scene", "planner"])
+    row = frame.loc[("zigzag", WITHOUT)]
+    assert (row["paper cost mean"], row["paper cost SD"]) == (251.56, "24.17")
+    assert (row["paper gen mean"], row["ours cost mean"]) == (174.0, 250.0)
+    maze = frame.loc[("maze", WITHOUT)]
+    assert (maze["paper feasible"], maze["ours feasible"]) == ("never", "0 of 1")
+    assert frame.loc[("maze", "plain-ga"), "paper feasible"] == "never"
+    assert frame.loc[("obstacles_40", WITHOUT), "paper feasible"] == ""
+
+
+def test_tables_that_the_runs_cannot_answer_are_left_out(runs_of):
+    names = [table.name for table in paper_tables(runs_of(solved(156.0)))]
+    assert names == ["paper-static", "paper-ablation"]
+
+
+def test_every_table_of_times_says_that_the_papers_machine_was_another(runs_of):
+    runs = runs_of(solved(156.0), exhausted())
+    notes = {table.name: table.note for table in paper_tables(runs)}
+    for name in ("paper-table-1", "paper-static"):
+        assert "Pentium III" in notes[name]
+
+
+@pytest.fixture
+def table():
+    frame = pd.DataFrame(
+        {"planner": ["a_b", "c"], "cost mean": [1.0, float("nan")], "runs": [20, 3]}
+    )
+    return Table("costs", "Costs & more", frame, "A note with 5 %.")
+
+
+def test_text_and_markdown_round_and_leave_gaps_where_nothing_is_known(table):
+    for style in (Format.TABLE, Format.MARKDOWN):
+        text = render(table, style)
+        assert "Costs & more" in text
+        assert "1.00" in text
+        assert "nan" not in text
+        assert text.endswith("A note with 5 %.\n")
+
+
+def test_csv_holds_the_numbers_as_they_are(table):
+    assert render(table, Format.CSV) == "planner,cost mean,runs\na_b,1.0,20\nc,,3\n"
+
+
+def test_latex_is_escaped_and_has_caption_and_label(table):
+    text = render(table, Format.LATEX)
+    assert r"\caption{Costs \& more. A note with 5 \%.}" in text
+    assert r"\label{tab:costs}" in text
+    assert r"a\_b" in text
+    assert r"\begin{tabular}{lrr}" in text

@@ -1,0 +1,301 @@
+"""The command as users run it: real processes, a real store, planners of a stranger."""
+
+import json
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+import uuid
+import warnings
+from dataclasses import dataclass
+
+import psutil
+import pytest
+
+from suite.cli import main
+from suite.store import read_paths, read_runs
+
+COMMAND = [sys.executable, "-c", "from suite.cli import main; main()"]
+
+
+@dataclass(frozen=True)
+class Done:
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def kbga_bench(monkeypatch, capsys):
+    """The command in this process, where everything is imported already."""
+
+    def run(*arguments, code=0):
+        monkeypatch.setattr(sys, "argv", ["kbga-bench", *map(str, arguments)])
+        with pytest.raises(SystemExit) as caught, warnings.catch_warnings():
+            main()
+        done = Done(int(caught.value.code or 0), *capsys.readouterr())
+        assert done.code == code, done.err
+        return done
+
+    return run
+
+
+@pytest.fixture
+def error_of(kbga_bench):
+    def run(*arguments):
+        done = kbga_bench(*arguments, code=2)
+        assert done.out == ""
+        return done.err
+
+    return run
+
+
+def in_own_process(*arguments, code=0, env=None):
+    done = subprocess.run(
+        [*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=120, env=env
+    )
+    assert done.returncode == code, done.stderr
+    return Done(done.returncode, done.stdout, done.stderr)
+
+
+@pytest.fixture
+def matrix(hostile, wall_file, tmp_path):
+    def make(*planners, seeds=2):
+        file = tmp_path / "matrix.toml"
+        text = f'scenes = ["{wall_file}"]\nseeds = {seeds}\n[limits]\nwall_s = 1.0\n'
+        text += "".join(f'[[planner]]\nplanner = "{planner}"\n' for planner in planners)
+        file.write_text(text)
+        return file
+
+    return make
+
+
+@pytest.fixture(scope="module")
+def filled(hostile_site, wall_file, tmp_path_factory):
+    """A store with rows of two planners, made by the command itself."""
+    folder = tmp_path_factory.mktemp("filled")
+    (folder / "m.toml").write_text(
+        f'scenes = ["{wall_file}"]\nseeds = 2\n[[planner]]\nplanner = "wanderer"\n'
+        '[[planner]]\nplanner = "gives-up"\n'
+    )
+    env = {**os.environ, "PYTHONPATH": str(hostile_site)}
+    in_own_process("run", folder / "m.toml", "--store", folder / "s.db", "--jobs", 2, env=env)
+    return folder / "s.db"
+
+
+def test_lists_are_json_for_programs(kbga_bench):
+    scenes = json.loads(kbga_bench("list", "scenes", "--format", "json").out)
+    zigzag = next(scene for scene in scenes if scene["name"] == "zigzag")
+    assert zigzag["obstacles"] == 5
+    assert {"path", "vertices", "parts", "optimum"} <= set(zigzag)
+    matrices = json.loads(kbga_bench("list", "matrices", "--format", "json").out)
+    paper = next(matrix for matrix in matrices if matrix["name"] == "paper-static")
+    assert paper["runs"] == 8 * 6 * 20
+
+
+def test_a_plugin_that_cannot_be_imported_is_listed_with_the_reason(kbga_bench, hostile):
+    planners = json.loads(kbga_bench("list", "planners", "--format", "json").out)
+    broken = next(planner for planner in planners if planner["name"] == "broken")
+    assert not broken["available"]
+    assert "no_such_module" in broken["reason"]
+    assert "wanderer" in kbga_bench("list", "planners").out
+
+
+def test_exact_says_the_optimum_or_that_there_is_none(kbga_bench, wall_file, closed_file):
+    found = json.loads(kbga_bench("exact", wall_file, "--format", "json").out)
+    assert found["status"] == "solved"
+    assert found["optimum"] == pytest.approx(12.0)
+    assert found["path"] == [[1, 3], [4, 7], [6, 7], [9, 3]]
+    none = json.loads(kbga_bench("exact", closed_file, "--format", "json").out)
+    assert (none["status"], none["optimum"], none["path"]) == ("infeasible", None, None)
+    assert "there is no path" in kbga_bench("exact", closed_file).out
+
+
+def test_plan_says_all_in_json(kbga_bench, hostile, wall_file):
+    done = kbga_bench(
+        "plan", wall_file, "--planner", "wanderer", "--seed", 3, "--set", "reach=0.5",
+        "--generations", 5, "--format", "json",
+    )  # fmt: skip
+    found = json.loads(done.out)
+    assert found["status"] == "solved"
+    assert found["settings"] == {"reach": 0.5}
+    assert found["budget"] == {"wall_s": None, "generations": 5, "checks": None}
+    assert found["collision_checks"] == 9
+    assert (found["generations"], found["generation_of_best"]) == (5, 3)
+    assert [cost for _, cost in found["events"]] == [100.0, 50.0]
+    assert found["time_to_best_s"] <= found["wall_s"]
+    assert found["gap"] == pytest.approx(found["cost"] / found["optimum"] - 1)
+    assert found["path"][0] == [1, 3]
+
+
+def test_plan_gives_the_same_path_in_two_processes(hostile, wall_file):
+    arguments = ("plan", wall_file, "--planner", "wanderer", "--seed", 7, "--format", "json")
+    first, second = (json.loads(in_own_process(*arguments).out) for _ in range(2))
+    assert first["path"] == second["path"]
+
+
+def test_plan_ends_with_1_if_there_is_no_path_of_value(kbga_bench, hostile, wall_file):
+    done = kbga_bench("plan", wall_file, "--planner", "cheats", code=1)
+    assert "invalid" in done.out
+    assert "enters obstacle 1" in done.out
+
+
+def test_plan_draws_the_run(kbga_bench, wall_file, tmp_path):
+    picture = tmp_path / "run.png"
+    kbga_bench("plan", wall_file, "--planner", "visibility-graph", "--plot", picture)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_errors_are_one_line_and_come_first(error_of, hostile, wall_file, tmp_path):
+    assert "Did you mean 'zigzag'?" in error_of("plan", "zigzga", "--planner", "kbga")
+    assert "Did you mean 'wanderer'?" in error_of("plan", wall_file, "--planner", "wandrer")
+    plan = ("plan", wall_file, "--planner", "wanderer")
+    assert "no setting 'raech'" in error_of(*plan, "--set", "raech=1")
+    assert "write it as key=value" in error_of(*plan, "--set", "reach")
+    assert "wall_s is -1.0" in error_of(*plan, "--wall-s", -1)
+    assert "no query 'x'" in error_of(*plan, "--query", "x")
+    assert "figures are .png" in error_of(*plan, "--plot", tmp_path / "x.gif")
+    assert "no such store" in error_of("tables", tmp_path / "none.db")
+    for line in (error_of("exact", tmp_path / "none.geojson"),):
+        assert line.startswith("kbga-bench: error: ")
+        assert line.count("\n") == 1
+
+
+def test_a_bad_matrix_makes_no_store(error_of, tmp_path):
+    (tmp_path / "bad.toml").write_text("seeds = 3")
+    message = error_of("run", tmp_path / "bad.toml", "--store", tmp_path / "s.db")
+    assert "bad.toml: 'scenes' is missing" in message
+    assert not (tmp_path / "s.db").exists()
+
+
+def test_run_keeps_rows_and_says_how_it_ended(kbga_bench, matrix, tmp_path):
+    store = tmp_path / "s.db"
+    done = kbga_bench("run", matrix("wanderer", "raises"), "--store", store, "--jobs", 2)
+    assert "4 of 4 runs are in the store: 0 were there, 4 ran now, 2 of these failed." in (done.out)
+    assert "error: RuntimeError: no luck today" in done.err
+    again = kbga_bench("run", matrix("wanderer", "raises"), "--store", store)
+    assert "4 were there, 0 ran now" in again.out
+    assert len(read_runs(store)) == 4
+
+
+def test_tables_in_every_format(kbga_bench, filled, tmp_path):
+    assert "success" in kbga_bench("tables", filled).out
+    csv = kbga_bench("tables", filled, "--format", "csv").out
+    assert csv.startswith("scene,planner,runs,solved")
+    assert "| wall" in kbga_bench("tables", filled, "--format", "markdown").out
+    assert r"\begin{tabular}" in kbga_bench("tables", filled, "--format", "latex").out
+    kbga_bench("tables", filled, "--format", "markdown", "--output", tmp_path / "t")
+    assert (tmp_path / "t" / "summary.md").exists()
+
+
+def test_results_hold_tables_rows_figures_and_the_manifest(kbga_bench, filled, tmp_path):
+    kbga_bench("results", filled, tmp_path / "r")
+    names = {p.relative_to(tmp_path / "r").as_posix() for p in (tmp_path / "r").rglob("*.*")}
+    assert {
+        "summary.md",
+        "summary.csv",
+        "wall.png",
+        "manifest.json",
+        "rows/runs.parquet",
+        "rows/paths.parquet",
+    } <= names
+    manifest = json.loads((tmp_path / "r" / "manifest.json").read_text())
+    assert manifest["runs"] == 4
+    assert manifest["by_status"] == {"solved": 2, "exhausted": 2}
+
+
+def test_the_same_store_gives_the_same_bytes(kbga_bench, filled, tmp_path):
+    for name in "ab":
+        kbga_bench("results", filled, tmp_path / name / "r")
+    for file in (tmp_path / "a" / "r").rglob("*.*"):
+        other = tmp_path / "b" / "r" / file.relative_to(tmp_path / "a" / "r")
+        assert file.read_bytes() == other.read_bytes(), file.name
+
+
+def test_export_writes_a_file_for_each_kind_of_row(kbga_bench, filled, tmp_path):
+    kbga_bench("export", filled, tmp_path, "--to", "csv")
+    assert {p.name for p in tmp_path.glob("*.csv")} == {
+        "runs.csv",
+        "events.csv",
+        "traces.csv",
+        "paths.csv",
+    }
+
+
+def started(matrix, store, mark):
+    """The command running a matrix, in a process group of its own, once it has written 3 rows."""
+    run = subprocess.Popen(
+        [*COMMAND, "run", str(matrix), "--store", str(store), "--jobs", "2"],
+        env={**os.environ, "KBGA_TEST_MARK": mark},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    deadline = time.monotonic() + 60
+    while rows_of(store) < 3 and time.monotonic() < deadline:
+        time.sleep(0.02)
+    return run
+
+
+def rows_of(store):
+    try:
+        return len(read_runs(store))
+    except Exception:
+        return 0
+
+
+def marked(mark):
+    """Processes that descend from a command, wherever they hang now."""
+    found = []
+    for process in psutil.process_iter():
+        try:
+            if process.environ().get("KBGA_TEST_MARK") == mark:
+                found.append(process)
+        except psutil.Error:
+            continue
+    return found
+
+
+def gone(mark, patience_s=5.0):
+    deadline = time.monotonic() + patience_s
+    while marked(mark) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    return not marked(mark)
+
+
+@pytest.mark.parametrize("sleeper", ["sleeper", "hangs-in-c"])
+def test_kill_9_loses_no_finished_row_doubles_none_and_leaves_no_orphan(matrix, tmp_path, sleeper):
+    store, mark = tmp_path / "s.db", uuid.uuid4().hex
+    wanted = matrix("wanderer", sleeper, seeds=4)
+    run = started(wanted, store, mark)
+    assert marked(mark)
+    run.kill()
+    run.wait()
+    assert gone(mark)
+    before = read_runs(store).set_index("key")
+    paths = read_paths(store)
+    assert 3 <= len(before) < 8
+    in_own_process("run", wanted, "--store", store, "--jobs", 4)
+    after = read_runs(store).set_index("key")
+    assert len(after) == 8
+    assert after.index.is_unique
+    assert after.loc[before.index, "wall_s"].equals(before["wall_s"])
+    assert all(read_paths(store)[key].tolist() == path.tolist() for key, path in paths.items())
+    with sqlite3.connect(store) as connection:
+        assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+
+
+def test_ctrl_c_stops_tidily_and_says_how_to_go_on(matrix, tmp_path):
+    store, mark = tmp_path / "s.db", uuid.uuid4().hex
+    run = started(matrix("wanderer", "hangs", seeds=4), store, mark)
+    os.killpg(run.pid, signal.SIGINT)
+    _, stderr = run.communicate(timeout=10)
+    assert run.returncode == 130
+    assert "to go on, give the same command again" in stderr
+    assert "Traceback" not in stderr
+    assert gone(mark)
+    assert 3 <= len(read_runs(store)) < 8
+    assert set(read_runs(store)["status"]) <= {"solved", "timed_out"}

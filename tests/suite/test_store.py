@@ -1,0 +1,161 @@
+import sqlite3
+
+import numpy as np
+import pytest
+
+from suite.errors import StoreError
+from suite.planner import PlanStatus
+from suite.store import (
+    open_store,
+    read_events,
+    read_paths,
+    read_runs,
+    read_sessions,
+    read_traces,
+)
+from tests.suite.harness.records import make_cell, make_record
+
+
+@pytest.fixture
+def file(tmp_path):
+    return tmp_path / "deep" / "store.db"
+
+
+def filled(file, *records):
+    with open_store(file) as store:
+        store.begin_session({"matrix": "m", "python": "3.11"})
+        for record in records:
+            store.add(record)
+
+
+def test_a_row_comes_back_as_it_was_written(file):
+    record = make_record()
+    filled(file, record)
+    (row,) = read_runs(file).to_dict("records")
+    assert row["key"] == record.cell.key
+    assert row["status"] == "solved"
+    assert row["cost"] == record.cost
+    assert row["gap"] == record.gap
+    assert row["generation_of_best"] == 50
+    assert row["budget_generations"] == 100
+    assert row["settings"] == '{"population_size":50}'
+    assert row["details"] == '{"restarts":2.0}'
+    assert not row["contended"]
+    assert read_sessions(file) == [{"id": 1, "matrix": "m", "python": "3.11"}]
+
+
+def test_paths_come_back_bit_for_bit(file):
+    record = make_record()
+    filled(file, record)
+    np.testing.assert_array_equal(read_paths(file)[record.cell.key], record.path)
+
+
+def test_events_and_traces_come_back(file):
+    record = make_record()
+    filled(file, record)
+    events = read_events(file)
+    assert events["cost"].tolist() == [200.0, 156.0]
+    assert events["generation"].tolist() == [1, 50]
+    traces = read_traces(file)
+    assert traces["best"].tolist() == [200.0, 156.0]
+    assert np.isnan(traces["mean"].iloc[1])
+    assert traces["key"].eq(record.cell.key).all()
+
+
+def test_a_row_without_anything_is_kept_too(file):
+    record = make_record(
+        status=PlanStatus.CRASHED,
+        **dict.fromkeys(("cost", "gap", "generations", "path", "contended")),
+        improvements=(),
+        trace=(),
+    )
+    filled(file, record)
+    assert read_runs(file)["cost"].isna().all()
+    assert read_paths(file) == {}
+    assert read_traces(file).empty
+
+
+def test_a_key_can_be_written_once_and_a_failed_row_leaves_nothing(file):
+    filled(file, make_record())
+    with open_store(file) as store:
+        store.begin_session({})
+        with pytest.raises(StoreError, match="can't be added"):
+            store.add(make_record())
+        # events collide, the row itself does not: all of it must be undone
+        store._connection.execute(
+            "INSERT INTO events VALUES (?, 1, 0, 0, 0, 0, 0)", (make_cell(seed=1).key,)
+        )
+        store._connection.commit()
+        with pytest.raises(StoreError, match="can't be added"):
+            store.add(make_record(make_cell(seed=1)))
+    assert len(read_runs(file)) == 1
+    assert set(read_paths(file)) == {make_cell().key}
+
+
+def test_rows_need_a_session(file):
+    with open_store(file) as store, pytest.raises(StoreError, match="begin a session"):
+        store.add(make_record())
+
+
+def test_rows_come_in_the_order_of_their_matrix(file):
+    filled(file, *(make_record(make_cell(seed=s, position=9 - s)) for s in range(5)))
+    assert read_runs(file)["seed"].tolist() == [4, 3, 2, 1, 0]
+
+
+def test_an_empty_store_reads_as_empty_tables(file):
+    filled(file)
+    assert read_runs(file).empty
+    assert read_events(file).empty
+    assert read_traces(file).empty
+
+
+def test_a_missing_store_is_an_error_that_names_it(file):
+    with pytest.raises(StoreError, match=r"store\.db: there is no such store"):
+        read_runs(file)
+    with pytest.raises(StoreError, match="there is no such store"):
+        open_store(file, create=False)
+    assert not file.exists()
+
+
+def test_another_file_is_not_touched(tmp_path):
+    file = tmp_path / "notes.txt"
+    file.write_text("not a database, and long enough to be looked at by SQLite" * 20)
+    before = file.read_bytes()
+    with pytest.raises(StoreError, match="is no store"):
+        open_store(file)
+    with pytest.raises(StoreError, match="is no store"):
+        read_runs(file)
+    assert file.read_bytes() == before
+
+
+def test_another_database_is_not_touched(tmp_path):
+    file = tmp_path / "other.db"
+    with sqlite3.connect(file) as other:
+        other.execute("CREATE TABLE t (x)")
+    before = file.read_bytes()
+    with pytest.raises(StoreError, match=r"no store of kbga-bench"):
+        open_store(file)
+    assert file.read_bytes() == before
+
+
+def test_another_version_of_the_schema_is_refused(file):
+    filled(file)
+    with sqlite3.connect(file) as connection:
+        connection.execute("PRAGMA user_version = 99")
+    with pytest.raises(StoreError, match="version 99"):
+        read_runs(file)
+
+
+def test_a_folder_is_no_store(tmp_path):
+    with pytest.raises(StoreError, match="can't be opened"):
+        open_store(tmp_path)
+
+
+def test_a_store_that_another_process_writes_to_says_so(file, monkeypatch):
+    filled(file)
+    other = sqlite3.connect(file)
+    other.execute("BEGIN IMMEDIATE")
+    monkeypatch.setattr("suite.store.BUSY_S", 0.1)
+    with open_store(file) as store, pytest.raises(StoreError, match="another process"):
+        store.begin_session({})
+    other.close()
