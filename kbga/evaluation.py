@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numba import njit
 
-from kbga.encoding import MAX_HITS, Population
+from kbga.encoding import MAX_HITS, Population, distance
 from suite.geometry.kernels import (
     ObstacleArrays,
     next_group_entered,
@@ -55,7 +55,7 @@ def escape_distance(
     which the group is joined to the border is a dead end. Where both sides are dead ends no shift
     helps, and the sum of both is taken (ours: deeper than either).
     """
-    span = math.hypot(bx - ax, by - ay)
+    span = distance(ax, ay, bx, by)
     if span == 0.0:
         # No direction to be square to: the way out of the group's box.
         box = arrays.group_box[group]
@@ -88,6 +88,39 @@ def _is_closed_bend(nodes: np.ndarray, i: int, k: int, arrays: ObstacleArrays) -
 
 
 @njit(cache=True)
+def _is_closed_by_pinch(nodes: np.ndarray, i: int, k: int, arrays: ObstacleArrays) -> bool:
+    """Whether segment k, which enters no obstacle, is closed by a pinch point."""
+    return (
+        segment_slips_through(
+            nodes[i, k].x, nodes[i, k].y, nodes[i, k + 1].x, nodes[i, k + 1].y, arrays
+        )
+        or _is_closed_bend(nodes, i, k, arrays)
+        or _is_closed_bend(nodes, i, k + 1, arrays)
+    )
+
+
+@njit(cache=True)
+def is_free_segment(
+    nodes: np.ndarray, i: int, k: int, arrays: ObstacleArrays, counter: np.ndarray
+) -> bool:
+    """Whether segment k of chromosome i is feasible; if so, that is written into its node.
+
+    For those operators that want nothing but feasible segments: it ends at the first obstacle.
+    """
+    ax, ay = nodes[i, k].x, nodes[i, k].y
+    bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
+    counter[0] += 1
+    if next_group_entered(ax, ay, bx, by, arrays, 0) >= 0:
+        return False
+    if arrays.pinch_xy.shape[0] > 0 and _is_closed_by_pinch(nodes, i, k, arrays):
+        return False
+    nodes[i, k].length = distance(ax, ay, bx, by)
+    nodes[i, k].depth = 0.0
+    nodes[i, k].hit_count = 0
+    return True
+
+
+@njit(cache=True)
 def evaluate_segment(
     nodes: np.ndarray, i: int, k: int, arrays: ObstacleArrays, counter: np.ndarray
 ) -> None:
@@ -107,14 +140,10 @@ def evaluate_segment(
     if (
         depth == 0.0
         and arrays.pinch_xy.shape[0] > 0
-        and (
-            segment_slips_through(ax, ay, bx, by, arrays)
-            or _is_closed_bend(nodes, i, k, arrays)
-            or _is_closed_bend(nodes, i, k + 1, arrays)
-        )
+        and _is_closed_by_pinch(nodes, i, k, arrays)
     ):
         depth = LEAST_DEPTH
-    nodes[i, k].length = math.hypot(bx - ax, by - ay)
+    nodes[i, k].length = distance(ax, ay, bx, by)
     nodes[i, k].depth = depth
     nodes[i, k].hit_count = count
 

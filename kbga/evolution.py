@@ -118,6 +118,8 @@ def _transform(
             changed |= improve(
                 children, i, scratch, problem, rates.penalty, rates.improvement_radius, rng, counter
             )
+        if not changed:
+            break
 
 
 @njit(cache=True)

@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from kbga.encoding import Population, close_columns, forget
-from kbga.evaluation import evaluate_segment, sum_up
+from kbga.evaluation import evaluate_segment, is_free_segment, sum_up
 from kbga.problem import Problem
 
 
@@ -31,10 +31,11 @@ def delete(
     rng: np.random.Generator,
     counter: np.ndarray,
 ) -> bool:
-    """Delete a random node of chromosome i if that lowers its cost; whether it was done.
+    """Delete a random node of chromosome i if that is beneficial; whether it was done.
 
-    Turning infeasible into feasible always lowers the cost: the new segment is no longer than the
-    two that it replaces. For feasible and infeasible paths alike.
+    An infeasible path must get cheaper; where it turns feasible it does, for the new segment is
+    no longer than the two that it replaces. A feasible path must stay feasible: then it gets
+    shorter.
     """
     nodes = population.nodes
     k = _random_node(nodes, i, population.chromosomes[i].size, rng)
@@ -42,10 +43,16 @@ def delete(
         return False
     scratch[0, 0] = nodes[i, k - 1]
     scratch[0, 1] = nodes[i, k + 1]
-    evaluate_segment(scratch, 0, 0, problem.arrays, counter)
-    before = nodes[i, k - 1].length + nodes[i, k].length
-    before += (nodes[i, k - 1].depth + nodes[i, k].depth) * penalty
-    if scratch[0, 0].length + scratch[0, 0].depth * penalty >= before:
+    if population.chromosomes[i].infeasible == 0:
+        beneficial = is_free_segment(scratch, 0, 0, problem.arrays, counter)
+    else:
+        evaluate_segment(scratch, 0, 0, problem.arrays, counter)
+        beneficial = scratch[0, 0].length + scratch[0, 0].depth * penalty < (
+            nodes[i, k - 1].length
+            + nodes[i, k].length
+            + (nodes[i, k - 1].depth + nodes[i, k].depth) * penalty
+        )
+    if not beneficial:
         nodes[i, k].needed = 1
         return False
     nodes[i, k - 1] = scratch[0, 0]

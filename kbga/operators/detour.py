@@ -3,12 +3,10 @@
 Row 0 holds the node before, the node that is tried, and the node after; row 1 the best so far.
 """
 
-import math
-
 import numpy as np
 from numba import njit
 
-from kbga.encoding import NODE
+from kbga.encoding import NODE, distance
 
 
 def make_scratch() -> np.ndarray:
@@ -20,6 +18,6 @@ def make_scratch() -> np.ndarray:
 def detour_length(scratch: np.ndarray) -> float:
     """Length of the way over the node that is tried, metres."""
     x, y = scratch[0, 1].x, scratch[0, 1].y
-    return math.hypot(x - scratch[0, 0].x, y - scratch[0, 0].y) + math.hypot(
-        scratch[0, 2].x - x, scratch[0, 2].y - y
+    return distance(scratch[0, 0].x, scratch[0, 0].y, x, y) + distance(
+        x, y, scratch[0, 2].x, scratch[0, 2].y
     )

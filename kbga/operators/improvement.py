@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from kbga.encoding import Population, contains, forget, set_node
-from kbga.evaluation import evaluate_segment, sum_up
+from kbga.evaluation import is_free_segment, sum_up
 from kbga.operators.detour import detour_length
 from kbga.problem import Problem
 
@@ -48,11 +48,10 @@ def _move(
         length = detour_length(scratch)
         if length >= best or contains(nodes, i, size, gene):
             continue
-        evaluate_segment(scratch, 0, 0, problem.arrays, counter)
-        if scratch[0, 0].depth > 0.0:
-            continue
-        evaluate_segment(scratch, 0, 1, problem.arrays, counter)
-        if scratch[0, 1].depth > 0.0:
+        if not (
+            is_free_segment(scratch, 0, 0, problem.arrays, counter)
+            and is_free_segment(scratch, 0, 1, problem.arrays, counter)
+        ):
             continue
         best = length
         moved = True
@@ -90,8 +89,9 @@ def improve(
 ) -> bool:
     """Improve a random node of chromosome i if that is feasible; whether the node moved.
 
-    A pattern search: steps of ``radius`` lattice units while they help, then half that size, down
-    to one unit. A node that it has left alone is settled until a neighbour changes.
+    A pattern search over the neighbours: steps that help are doubled, up to ``radius`` lattice
+    units, others halved, until a step of one unit does not help. Then the node is settled until
+    a neighbour changes.
     """
     size = population.chromosomes[i].size
     if population.chromosomes[i].infeasible > 0:
@@ -100,11 +100,12 @@ def improve(
     k = _random_node(nodes, i, size, rng)
     if k == 0:
         return False
-    step = radius
+    step = 1
     moved = False
     while step > 0:
         if _move(nodes, i, size, k, step, scratch, problem, counter):
             moved = True
+            step = min(2 * step, radius)
         else:
             step //= 2
     if moved:

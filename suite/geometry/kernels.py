@@ -70,6 +70,54 @@ def _shares_seam(
 
 
 @njit(cache=True)
+def _point_enters_part(
+    x: float, y: float, part_xy: np.ndarray, seam: np.ndarray, first: int, last: int
+) -> bool:
+    """Whether a point lies in the interior of a convex part, or between the ends of its seams."""
+    inside = True
+    px, py = part_xy[last, 0], part_xy[last, 1]
+    edge = last
+    for i in range(first, last + 1):
+        qx, qy = part_xy[i, 0], part_xy[i, 1]
+        side = orientation(px, py, qx, qy, x, y)
+        if side < 0:
+            return False
+        if side == 0:
+            if seam[edge] and _between(px, py, qx, qy, x, y):
+                return True
+            inside = False
+        px, py, edge = qx, qy, i
+    return inside
+
+
+@njit(cache=True)
+def _runs_along_seam(
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    part_xy: np.ndarray,
+    seam: np.ndarray,
+    first: int,
+    last: int,
+) -> bool:
+    """Whether segment a-b lies on the line of a seam of a part and overlaps it."""
+    px, py = part_xy[last, 0], part_xy[last, 1]
+    edge = last
+    for i in range(first, last + 1):
+        qx, qy = part_xy[i, 0], part_xy[i, 1]
+        if (
+            seam[edge]
+            and orientation(bx, by, px, py, ax, ay) == 0
+            and orientation(bx, by, qx, qy, ax, ay) == 0
+            and _shares_seam(ax, ay, bx, by, px, py, qx, qy)
+        ):
+            return True
+        px, py, edge = qx, qy, i
+    return False
+
+
+@njit(cache=True, forceinline=True)
 def segment_enters_part(
     ax: float,
     ay: float,
@@ -86,34 +134,42 @@ def segment_enters_part(
     sets in the plane are apart if and only if the line of one of their edges separates them
     (Gottschalk 1996). Touching is allowed, entering is not.
     """
-    separated = False
+    if ax == bx and ay == by:
+        return _point_enters_part(ax, ay, part_xy, seam, first, last)
+    # The line of the segment first: it separates most parts whose box was met.
     left = False
     right = False
+    on_line = 0
+    for i in range(first, last + 1):
+        side = orientation(bx, by, part_xy[i, 0], part_xy[i, 1], ax, ay)
+        left = left or side > 0
+        right = right or side < 0
+        on_line += side == 0
+    if not (left and right):
+        return on_line > 1 and _runs_along_seam(ax, ay, bx, by, part_xy, seam, first, last)
     px, py = part_xy[last, 0], part_xy[last, 1]
-    edge = last
     for i in range(first, last + 1):
         qx, qy = part_xy[i, 0], part_xy[i, 1]
-        side_a = orientation(px, py, qx, qy, ax, ay)
-        side_b = orientation(px, py, qx, qy, bx, by)
-        if side_a <= 0 and side_b <= 0:
-            if side_a < 0 or side_b < 0:
-                return False
-            # On the edge's line: outside the part, but closed where the edge is a seam. Other
-            # edges may lie on the same line, so the loop goes on.
-            separated = True
-            if seam[edge] and _shares_seam(ax, ay, bx, by, px, py, qx, qy):
-                return True
-        if not separated:
-            side = orientation(ax, ay, bx, by, qx, qy)
-            left = left or side > 0
-            right = right or side < 0
-        px, py, edge = qx, qy, i
-    if separated:
-        return False
-    return (left and right) or (ax == bx and ay == by)
+        if (
+            orientation(qx, qy, ax, ay, px, py) <= 0
+            and orientation(qx, qy, bx, by, px, py) <= 0
+        ):
+            return False
+        px, py = qx, qy
+    return True
 
 
-@njit(cache=True)
+@njit(cache=True, forceinline=True)
+def _boxes_apart(
+    xmin: float, xmax: float, ymin: float, ymax: float, boxes: np.ndarray, i: int
+) -> bool:
+    """Whether a box and box i of ``boxes`` have no point in common."""
+    return (
+        xmin > boxes[i, 2] or xmax < boxes[i, 0] or ymin > boxes[i, 3] or ymax < boxes[i, 1]
+    )
+
+
+@njit(cache=True, forceinline=True)
 def next_group_entered(
     ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays, group: int
 ) -> int:
@@ -128,20 +184,10 @@ def next_group_entered(
     xmin, xmax = min(ax, bx), max(ax, bx)
     ymin, ymax = min(ay, by), max(ay, by)
     for g in range(group, group_box.shape[0]):
-        if (
-            xmin > group_box[g, 2]
-            or xmax < group_box[g, 0]
-            or ymin > group_box[g, 3]
-            or ymax < group_box[g, 1]
-        ):
+        if _boxes_apart(xmin, xmax, ymin, ymax, group_box, g):
             continue
         for part in range(group_start[g], group_start[g + 1]):
-            if (
-                xmin > part_box[part, 2]
-                or xmax < part_box[part, 0]
-                or ymin > part_box[part, 3]
-                or ymax < part_box[part, 1]
-            ):
+            if _boxes_apart(xmin, xmax, ymin, ymax, part_box, part):
                 continue
             first, last = part_start[part], part_start[part + 1] - 1
             if segment_enters_part(ax, ay, bx, by, part_xy, seam, first, last):
@@ -229,7 +275,7 @@ def segment_enters(ax: float, ay: float, bx: float, by: float, arrays: ObstacleA
     """Whether segment a-b leaves free space: enters an obstacle, the frame, or a closed passage."""
     if next_group_entered(ax, ay, bx, by, arrays, 0) >= 0:
         return True
-    return segment_slips_through(ax, ay, bx, by, arrays)
+    return arrays.pinch_xy.shape[0] > 0 and segment_slips_through(ax, ay, bx, by, arrays)
 
 
 @njit(cache=True)

@@ -39,7 +39,13 @@ LINES = (
 )
 
 WIDTH = 6.0
-LEGEND_HEIGHT = 1.0
+LEGEND_LINE = 0.19
+AROUND = 0.8
+"""Height of the title, the axis and its label, inches."""
+
+ONE_COLUMN_FROM = 34
+"""Characters of a legend's line of which two no longer stand side by side."""
+
 RASTER_DPI = 150
 
 
@@ -115,7 +121,7 @@ def plot_scene_results(
     Figure
     """
     figure, axes = _scene_figure(scene)
-    widths = np.linspace(4.0, 1.2, max(len(best), 2))
+    widths = np.linspace(5.0, 1.2, max(len(best), 2))
     for i, (planner, path) in enumerate(best.items()):
         colour, style = LINES[i % len(LINES)]
         label = (labels or {}).get(planner, planner)
@@ -161,7 +167,7 @@ def save(figure: Figure, file: Path) -> None:
 
 def _scene_figure(scene: Scene) -> tuple[Figure, Axes]:
     xmin, ymin, xmax, ymax = scene.bounds
-    height = WIDTH * min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0) + LEGEND_HEIGHT
+    height = WIDTH * min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0) + AROUND
     figure, axes = plt.subplots(figsize=(WIDTH, height), layout="constrained")
     # The workspace has an outline of its own.
     axes.spines[:].set_visible(False)
@@ -206,4 +212,10 @@ def _finish(figure: Figure, axes: Axes, query: Query, title: str) -> None:
     axes.set_title(title)
     axes.set_xlabel("x (m)")
     axes.set_ylabel("y (m)")
-    figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    labels = axes.get_legend_handles_labels()[1]
+    columns = 1 if max(map(len, labels)) >= ONE_COLUMN_FROM else 2
+    width, height = figure.get_size_inches()
+    figure.set_size_inches(width, height + LEGEND_LINE * -(-len(labels) // columns))
+    figure.legend(
+        loc="outside lower center", ncols=columns, handlelength=3.6, frameon=False, fontsize=9
+    )

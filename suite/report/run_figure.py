@@ -11,7 +11,7 @@ from suite.record import RunRecord
 from suite.report.figures import plot_run, save
 from suite.scenes.catalogue import load_scene
 
-FIRST_POPULATION = "first_population"
+FIRST_POPULATION = "first population"
 """Name of the snapshot that planners with a population take of it."""
 
 

@@ -13,6 +13,8 @@ from tabulate import tabulate
 
 HEADER_WIDTH = 9
 NOTE_WIDTH = 100
+AS_PRINTED = -1
+"""For the paper's own figures: whole, or two digits after the point."""
 
 
 class Format(StrEnum):
@@ -120,7 +122,15 @@ def _escaped(text: str) -> str:
 
 
 def _is_numeric(column: "pd.Series[Any]") -> bool:
-    return bool(pd.api.types.is_numeric_dtype(column))
+    if pd.api.types.is_numeric_dtype(column):
+        return True
+    # Counts and measures in one column are objects, so that counts stay whole.
+    values = [value for value in column if not _is_missing(value)]
+    return bool(values) and all(isinstance(value, Real) for value in values)
+
+
+def _is_missing(value: Any) -> bool:
+    return value is None or value is pd.NA or (isinstance(value, float) and math.isnan(value))
 
 
 def _as_texts(frame: pd.DataFrame) -> pd.DataFrame:
@@ -132,21 +142,28 @@ def _as_texts(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def _digits(column: str) -> int | None:
-    """Digits after the point; None for the paper's own figures, which stay as it prints them."""
+    """Digits after the point; None where figures of several quantities share a column."""
     if column.startswith("paper"):
+        return AS_PRINTED
+    if column.startswith("ours") and "cost" not in column and "gen" not in column:
         return None
     return 3 if column.endswith("s)") else 1 if column.startswith("gen") else 2
 
 
 def _as_text(value: Any, digits: int | None) -> str:
-    if value is None or value is pd.NA or (isinstance(value, float) and math.isnan(value)):
+    if _is_missing(value):
         return ""
     if isinstance(value, bool | str) or not isinstance(value, Real):
         return str(value)
     if isinstance(value, Integral):
         return str(value)
     number = float(value)
+    if digits == AS_PRINTED:
+        return f"{number:.0f}" if number.is_integer() else f"{number:.2f}"
     if digits is not None:
         # Rounding may leave a zero with a sign.
         return f"{round(number, digits) + 0.0:.{digits}f}"
-    return f"{number:.0f}" if number.is_integer() and abs(number) >= 10 else f"{number:.2f}"
+    if number.is_integer() and abs(number) >= 10:
+        return f"{number:.0f}"
+    # Three significant digits of what is small: times of ours, in the paper's seconds.
+    return f"{number:.2f}" if abs(number) >= 1 or number == 0 else f"{number:#.3g}"

@@ -97,7 +97,7 @@ def float_points(rng: np.random.Generator, scene: Scene) -> np.ndarray:
 # By oracles
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(st.integers(0, 2**32))
 def test_exact_is_brute_force_where_obstacles_touch_overlap_and_enclose(seed):
     rng = np.random.default_rng(seed)

@@ -102,7 +102,7 @@ def test_direction_does_not_matter():
 
 def test_bends_at_pinch_points_agree_with_the_pieces_of_a_small_disc():
     bends = closed = 0
-    for seed in range(counts(150, 20)):
+    for seed in range(counts(80, 20)):
         rng = np.random.default_rng(seed)
         room, obstacles = random_solid(rng)
         arrangement = arrange(room, obstacles)

@@ -12,12 +12,18 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 
 from suite.exact import shortest_path
 from suite.planner import Plan, Planner, PlanStatus
+from suite.scene import make_scene
 
 
 class _Base(Planner):
+    def warm_up(self):
+        scene = make_scene("tiny", shapely.box(0, 0, 1, 1), [], {"main": ((0, 0), (1, 1))})
+        shortest_path(scene, scene.query())
+
     def path(self, scene, query):
         return shortest_path(scene, query).path
 

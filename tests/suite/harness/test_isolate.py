@@ -12,7 +12,7 @@ from suite.harness.single import cell_for
 from suite.harness.warm import Warmth
 from suite.planner import PlanStatus
 
-SHORT = Limits(wall_s=0.5, warm_up_s=10.0)
+SHORT = Limits(wall_s=0.5, warm_up_s=120.0)
 
 
 @pytest.fixture

@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from numba import njit
 
 from suite.errors import SceneError
 from suite.exact import shortest_path
-from suite.geometry.kernels import first_collision
+from suite.geometry.kernels import first_collision, segment_enters
 from suite.scenes.catalogue import load_scene, scene_file, scene_names
 from suite.scenes.homotopy import route_optima
 
@@ -111,6 +112,37 @@ def test_a_gap_between_obstacles_is_open_or_closed_but_never_a_slit(name):
         for other in groups[i + 1 :]:
             distance = group.distance(other)
             assert distance == 0.0 or distance >= 1.5
+
+
+@njit
+def _best_lattice_path(xy, arrays, limit):
+    """Length of the best path from node 0 to node 1 that bends at nodes; inf if above the limit."""
+    rest = np.hypot(xy[:, 0] - xy[1, 0], xy[:, 1] - xy[1, 1])
+    cost = np.full(xy.shape[0], np.inf)
+    closed = np.zeros(xy.shape[0], dtype=np.bool_)
+    cost[0] = 0.0
+    while True:
+        i = np.argmin(np.where(closed, np.inf, cost + rest))
+        if i == 1 or closed[i] or not np.isfinite(cost[i]):
+            return cost[1]
+        closed[i] = True
+        for j in range(xy.shape[0]):
+            way = cost[i] + np.hypot(xy[i, 0] - xy[j, 0], xy[i, 1] - xy[j, 1])
+            if way < cost[j] and way + rest[j] <= limit:
+                if not segment_enters(xy[i, 0], xy[i, 1], xy[j, 0], xy[j, 1], arrays):
+                    cost[j] = way
+
+
+@every_scene
+def test_a_100_by_100_lattice_is_fine_enough_for_every_scene(name):
+    """The paper (III) says so of its environments; its chromosomes bend at integer points only."""
+    scene = load_scene(name)
+    query, corners = scene.query(), scene.arrangement.corners[:, :2]
+    around = np.array([(dx, dy) for dx in range(-1, 3) for dy in range(-1, 3)])
+    nodes = np.unique((np.floor(corners)[:, None] + around).reshape(-1, 2), axis=0)
+    limit = 1.01 * shortest_path(scene, query).length
+    xy = np.vstack([query.start, query.goal, nodes])
+    assert _best_lattice_path(xy, scene.arrays, limit) <= limit
 
 
 @pytest.mark.parametrize("name", SERIES)
