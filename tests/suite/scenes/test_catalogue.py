@@ -128,9 +128,10 @@ def _best_lattice_path(xy, arrays, limit):
         closed[i] = True
         for j in range(xy.shape[0]):
             way = cost[i] + np.hypot(xy[i, 0] - xy[j, 0], xy[i, 1] - xy[j, 1])
-            if way < cost[j] and way + rest[j] <= limit:
-                if not segment_enters(xy[i, 0], xy[i, 1], xy[j, 0], xy[j, 1], arrays):
-                    cost[j] = way
+            if way >= cost[j] or way + rest[j] > limit:
+                continue
+            if not segment_enters(xy[i, 0], xy[i, 1], xy[j, 0], xy[j, 1], arrays):
+                cost[j] = way
 
 
 @every_scene
