@@ -20,7 +20,7 @@ from ompl import util as ou
 
 from baselines.visibility_graph import tiny_scene
 from suite.exact import path_length
-from suite.geometry.packed import pack, packed_segment_enters
+from suite.geometry.kernels import segment_enters_tables
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
 from suite.scene import Query, Scene
 
@@ -134,7 +134,14 @@ class ExactCollision(ob.MotionValidator):  # type: ignore[misc]
 
     def __init__(self, information: Any, scene: Scene, limit: float) -> None:
         super().__init__(information)
-        self._floats, self._whole = pack(scene.arrays)
+        arrays = scene.arrays
+        self._tables = (
+            arrays.groups,
+            arrays.parts,
+            arrays.vertices,
+            arrays.pinches,
+            arrays.ways,
+        )
         self.limit = limit
         self.stop_at = limit
         self.stop: Callable[[], None] = _do_nothing
@@ -158,7 +165,7 @@ class ExactCollision(ob.MotionValidator):  # type: ignore[misc]
 
     def is_free_point(self, x: float, y: float) -> bool:
         """Whether a point is free; not counted."""
-        return not packed_segment_enters(x, y, x, y, self._floats, self._whole)
+        return not segment_enters_tables(x, y, x, y, *self._tables)
 
     def _check(self, ax: float, ay: float, bx: float, by: float) -> bool:
         if self.checks >= self.stop_at:
@@ -166,7 +173,7 @@ class ExactCollision(ob.MotionValidator):  # type: ignore[misc]
             if self.checks >= self.limit:
                 return False
         self.checks += 1
-        return not packed_segment_enters(ax, ay, bx, by, self._floats, self._whole)
+        return not segment_enters_tables(ax, ay, bx, by, *self._tables)
 
 
 def _do_nothing() -> None:

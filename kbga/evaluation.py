@@ -12,6 +12,14 @@ from numba import njit
 
 from kbga.encoding import MAX_HITS, Population, distance
 from suite.geometry.kernels import (
+    FIRST_CONTACT,
+    FIRST_EDGE,
+    LAST_CONTACT,
+    LAST_EDGE,
+    XMAX,
+    XMIN,
+    YMAX,
+    YMIN,
     ObstacleArrays,
     next_group_entered,
     pinch_at,
@@ -23,79 +31,82 @@ LEAST_DEPTH = 1e-6
 segment is feasible if and only if its depth is zero."""
 
 
-@njit(cache=True)
+@njit(cache=True, forceinline=True)
 def _reach(
-    ax: float, ay: float, ux: float, uy: float, span: float, edges: np.ndarray, first: int, last: int
+    ax: float, ay: float, ux: float, uy: float, edges: np.ndarray, first: int, last: int
 ) -> tuple[float, float]:
-    """How far edges reach to the left (h > 0) and right (h < 0) inside the strip of a segment.
+    """How far the ends of edges lie to the left (> 0) and right (< 0) of the line from a along u.
 
-    The strip is 0 <= t <= span along the direction u from a. Returns the highest and the lowest h
-    of what lies in it; (-inf, inf) if nothing does.
+    Returns the largest and the smallest signed distance; 0 at the least and at the most.
     """
-    high = -math.inf
-    low = math.inf
+    left = 0.0
+    right = 0.0
     for e in range(first, last):
-        px, py = edges[e, 0] - ax, edges[e, 1] - ay
-        qx, qy = edges[e, 2] - ax, edges[e, 3] - ay
-        h = py * ux - px * uy
-        g = qy * ux - qx * uy
-        high = max(high, h, g)
-        low = min(low, h, g)
-    return high, low
+        h = (edges[e, 1] - ay) * ux - (edges[e, 0] - ax) * uy
+        g = (edges[e, 3] - ay) * ux - (edges[e, 2] - ax) * uy
+        left = max(left, h, g)
+        right = min(right, h, g)
+    return left, right
 
 
 @njit(cache=True)
 def escape_distance(
     ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays, group: int
 ) -> float:
-    """Shortest shift, square to segment a-b, that frees it from a whole obstacle group, metres.
+    """Shortest shift, square to segment a-b, that frees its line from an obstacle group, metres.
 
     Paper Fig. 3: (a) the smaller of the two sides; (b) the whole group must be left behind, so
-    each side counts with the farthest reach of the group in the segment's strip; (c) a side on
-    which the group is joined to the border is a dead end. Where both sides are dead ends no shift
-    helps, and the sum of both is taken (ours: deeper than either).
+    each side counts with the group's farthest vertex on it; (c) a side on which the group is
+    joined to the border is a dead end. Where both sides are dead ends no shift helps, and both
+    together are taken (ours: deeper than either).
+
+    The paper takes "the related vertices in the group"; here these are all of them, also those
+    that lie beyond the ends of the segment. Were they left out, a short slanted cut through a
+    long wall would count as shallow, though no small shift leads the path around the wall.
     """
     span = distance(ax, ay, bx, by)
     if span == 0.0:
         # No direction to be square to: the way out of the group's box.
-        box = arrays.group_box[group]
-        return max(LEAST_DEPTH, min(ax - box[0], box[2] - ax, ay - box[1], box[3] - ay))
+        xmin, ymin = arrays.groups[group, XMIN], arrays.groups[group, YMIN]
+        xmax, ymax = arrays.groups[group, XMAX], arrays.groups[group, YMAX]
+        return max(LEAST_DEPTH, min(ax - xmin, xmax - ax, ay - ymin, ymax - ay))
     ux, uy = (bx - ax) / span, (by - ay) / span
-    first, last = arrays.boundary_start[group], arrays.boundary_start[group + 1]
-    high, low = _reach(ax, ay, ux, uy, span, arrays.boundary, first, last)
-    left, right = max(high, 0.0), max(-low, 0.0)
-    first, last = arrays.border_start[group], arrays.border_start[group + 1]
-    border_high, border_low = _reach(ax, ay, ux, uy, span, arrays.border, first, last)
-    left_is_dead = border_high > 0.0
-    right_is_dead = border_low < 0.0
-    if left_is_dead and right_is_dead:
-        return max(LEAST_DEPTH, left + right)
-    if left_is_dead:
-        return max(LEAST_DEPTH, right)
-    if right_is_dead:
+    first = int(arrays.groups[group, FIRST_EDGE])
+    last = int(arrays.groups[group, LAST_EDGE])
+    left, right = _reach(ax, ay, ux, uy, arrays.boundary, first, last)
+    first = int(arrays.groups[group, FIRST_CONTACT])
+    last = int(arrays.groups[group, LAST_CONTACT])
+    dead_left, dead_right = _reach(ax, ay, ux, uy, arrays.contacts, first, last)
+    if dead_left > 0.0 and dead_right < 0.0:
+        return max(LEAST_DEPTH, left - right)
+    if dead_left > 0.0:
+        return max(LEAST_DEPTH, -right)
+    if dead_right < 0.0:
         return max(LEAST_DEPTH, left)
-    return max(LEAST_DEPTH, min(left, right))
+    return max(LEAST_DEPTH, min(left, -right))
 
 
 @njit(cache=True)
-def _is_closed_bend(nodes: np.ndarray, i: int, k: int, arrays: ObstacleArrays) -> bool:
+def _is_closed_bend(nodes: np.ndarray, i: int, k: int, pinches: np.ndarray) -> bool:
     """Whether column k is a lattice node on a pinch point.
 
     There two feasible segments need not make a feasible bend. Closing those few nodes (ours)
     keeps evaluation a sum over segments, as Eq. (1) has it.
     """
-    return nodes[i, k].gene >= 0 and pinch_at(nodes[i, k].x, nodes[i, k].y, arrays) >= 0
+    return nodes[i, k].gene >= 0 and pinch_at(nodes[i, k].x, nodes[i, k].y, pinches) >= 0
 
 
 @njit(cache=True)
-def _is_closed_by_pinch(nodes: np.ndarray, i: int, k: int, arrays: ObstacleArrays) -> bool:
+def _is_closed_by_pinch(
+    nodes: np.ndarray, i: int, k: int, pinches: np.ndarray, ways: np.ndarray
+) -> bool:
     """Whether segment k, which enters no obstacle, is closed by a pinch point."""
+    ax, ay = nodes[i, k].x, nodes[i, k].y
+    bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
     return (
-        segment_slips_through(
-            nodes[i, k].x, nodes[i, k].y, nodes[i, k + 1].x, nodes[i, k + 1].y, arrays
-        )
-        or _is_closed_bend(nodes, i, k, arrays)
-        or _is_closed_bend(nodes, i, k + 1, arrays)
+        segment_slips_through(ax, ay, bx, by, pinches, ways)
+        or _is_closed_bend(nodes, i, k, pinches)
+        or _is_closed_bend(nodes, i, k + 1, pinches)
     )
 
 
@@ -110,9 +121,11 @@ def is_free_segment(
     ax, ay = nodes[i, k].x, nodes[i, k].y
     bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
     counter[0] += 1
-    if next_group_entered(ax, ay, bx, by, arrays, 0) >= 0:
+    if next_group_entered(ax, ay, bx, by, arrays.groups, arrays.parts, arrays.vertices, 0) >= 0:
         return False
-    if arrays.pinch_xy.shape[0] > 0 and _is_closed_by_pinch(nodes, i, k, arrays):
+    if arrays.pinches.shape[0] > 0 and _is_closed_by_pinch(
+        nodes, i, k, arrays.pinches, arrays.ways
+    ):
         return False
     nodes[i, k].length = distance(ax, ay, bx, by)
     nodes[i, k].depth = 0.0
@@ -127,20 +140,21 @@ def evaluate_segment(
     """Length, depth and hit obstacles of segment k of chromosome i, written into its node."""
     ax, ay = nodes[i, k].x, nodes[i, k].y
     bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
+    groups, parts, vertices = arrays.groups, arrays.parts, arrays.vertices
     counter[0] += 1
     depth = 0.0
     count = 0
-    group = next_group_entered(ax, ay, bx, by, arrays, 0)
+    group = next_group_entered(ax, ay, bx, by, groups, parts, vertices, 0)
     while group >= 0:
         depth += escape_distance(ax, ay, bx, by, arrays, group)
         if count < MAX_HITS:
             nodes[i, k].hits[count] = group
             count += 1
-        group = next_group_entered(ax, ay, bx, by, arrays, group + 1)
+        group = next_group_entered(ax, ay, bx, by, groups, parts, vertices, group + 1)
     if (
         depth == 0.0
-        and arrays.pinch_xy.shape[0] > 0
-        and _is_closed_by_pinch(nodes, i, k, arrays)
+        and arrays.pinches.shape[0] > 0
+        and _is_closed_by_pinch(nodes, i, k, arrays.pinches, arrays.ways)
     ):
         depth = LEAST_DEPTH
     nodes[i, k].length = distance(ax, ay, bx, by)

@@ -51,7 +51,7 @@ def is_usable(node: int, arrays: ObstacleArrays, lattice: Lattice) -> bool:
     out keeps the evaluation a sum over segments.
     """
     x, y = node_x(lattice, node), node_y(lattice, node)
-    return not segment_enters(x, y, x, y, arrays) and pinch_at(x, y, arrays) < 0
+    return not segment_enters(x, y, x, y, arrays) and pinch_at(x, y, arrays.pinches) < 0
 
 
 @njit(cache=True)
@@ -63,7 +63,7 @@ def _nodes_near_corners(
     Those are the crossings of the lattice cell that holds the corner; where all of them are
     closed, the cells around it too. Shortest paths bend at corners only.
     """
-    groups = arrays.group_box.shape[0]
+    groups = arrays.groups.shape[0]
     order = np.argsort(corner_group, kind="mergesort")
     near = np.empty(16 * max(1, corners.shape[0]), dtype=np.int64)
     start = np.zeros(groups + 1, dtype=np.int64)

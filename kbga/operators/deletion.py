@@ -37,16 +37,16 @@ def delete(
     no longer than the two that it replaces. A feasible path must stay feasible: then it gets
     shorter.
     """
-    nodes = population.nodes
+    nodes, arrays = population.nodes, problem.arrays
     k = _random_node(nodes, i, population.chromosomes[i].size, rng)
     if k == 0:
         return False
     scratch[0, 0] = nodes[i, k - 1]
     scratch[0, 1] = nodes[i, k + 1]
     if population.chromosomes[i].infeasible == 0:
-        beneficial = is_free_segment(scratch, 0, 0, problem.arrays, counter)
+        beneficial = is_free_segment(scratch, 0, 0, arrays, counter)
     else:
-        evaluate_segment(scratch, 0, 0, problem.arrays, counter)
+        evaluate_segment(scratch, 0, 0, arrays, counter)
         beneficial = scratch[0, 0].length + scratch[0, 0].depth * penalty < (
             nodes[i, k - 1].length
             + nodes[i, k].length

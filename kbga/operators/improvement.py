@@ -3,10 +3,11 @@
 import numpy as np
 from numba import njit
 
-from kbga.encoding import Population, contains, forget, set_node
+from kbga.encoding import Lattice, Population, contains, forget, set_node
 from kbga.evaluation import is_free_segment, sum_up
 from kbga.operators.detour import detour_length
 from kbga.problem import Problem
+from suite.geometry.kernels import ObstacleArrays
 
 # The eight neighbours of a node, by columns and rows.
 _COLUMNS = (1, 1, 0, -1, -1, -1, 0, 1)
@@ -24,7 +25,8 @@ def _move(
     k: int,
     step: int,
     scratch: np.ndarray,
-    problem: Problem,
+    lattice: Lattice,
+    arrays: ObstacleArrays,
     counter: np.ndarray,
 ) -> bool:
     """Move node k by ``step`` lattice units to the neighbour that shortens the path most.
@@ -32,7 +34,7 @@ def _move(
     Whether it moved. Lengths are compared first, so that only a neighbour that would be better
     than the best so far is tested for collision.
     """
-    side = problem.lattice.side
+    side = lattice.side
     column, row = nodes[i, k].gene % side, nodes[i, k].gene // side
     scratch[0, 0] = nodes[i, k - 1]
     scratch[0, 2] = nodes[i, k + 1]
@@ -44,13 +46,13 @@ def _move(
         if not (0 <= new_column < side and 0 <= new_row < side):
             continue
         gene = new_row * side + new_column
-        set_node(scratch, 0, 1, gene, problem.lattice)
+        set_node(scratch, 0, 1, gene, lattice)
         length = detour_length(scratch)
         if length >= best or contains(nodes, i, size, gene):
             continue
         if not (
-            is_free_segment(scratch, 0, 0, problem.arrays, counter)
-            and is_free_segment(scratch, 0, 1, problem.arrays, counter)
+            is_free_segment(scratch, 0, 0, arrays, counter)
+            and is_free_segment(scratch, 0, 1, arrays, counter)
         ):
             continue
         best = length
@@ -100,10 +102,11 @@ def improve(
     k = _random_node(nodes, i, size, rng)
     if k == 0:
         return False
+    lattice, arrays = problem.lattice, problem.arrays
     step = 1
     moved = False
     while step > 0:
-        if _move(nodes, i, size, k, step, scratch, problem, counter):
+        if _move(nodes, i, size, k, step, scratch, lattice, arrays, counter):
             moved = True
             step = min(2 * step, radius)
         else:

@@ -21,7 +21,7 @@ def mutate(
 
     The result need not be better: mutation keeps the population diverse.
     """
-    nodes = population.nodes
+    nodes, arrays = population.nodes, problem.arrays
     size = population.chromosomes[i].size
     if size == 0:
         return False
@@ -32,7 +32,7 @@ def mutate(
         gene = (gene + 1) % count
     set_node(nodes, i, k, gene, problem.lattice)
     forget(nodes, i, k - 1, k + 1)
-    evaluate_segment(nodes, i, k - 1, problem.arrays, counter)
-    evaluate_segment(nodes, i, k, problem.arrays, counter)
+    evaluate_segment(nodes, i, k - 1, arrays, counter)
+    evaluate_segment(nodes, i, k, arrays, counter)
     sum_up(population, i, penalty)
     return True

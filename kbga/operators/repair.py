@@ -43,7 +43,7 @@ def repair(
     tries lattice nodes next to one of the obstacles hit, and takes the one whose two segments
     cost least, be it more than before: another repair may follow.
     """
-    nodes = population.nodes
+    nodes, arrays = population.nodes, problem.arrays
     size, infeasible = population.chromosomes[i].size, population.chromosomes[i].infeasible
     if infeasible == 0 or size + 2 >= nodes.shape[1]:
         return False
@@ -70,11 +70,11 @@ def repair(
         length = detour_length(scratch)
         if length >= best:
             continue
-        evaluate_segment(scratch, 0, 0, problem.arrays, counter)
+        evaluate_segment(scratch, 0, 0, arrays, counter)
         cost = length + scratch[0, 0].depth * penalty
         if cost >= best:
             continue
-        evaluate_segment(scratch, 0, 1, problem.arrays, counter)
+        evaluate_segment(scratch, 0, 1, arrays, counter)
         cost += scratch[0, 1].depth * penalty
         if cost < best:
             best = cost

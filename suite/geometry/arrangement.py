@@ -9,7 +9,7 @@ share is a seam. Metres, x right, y up.
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -74,7 +74,7 @@ def arrange(workspace: Polygon, obstacles: Sequence[Polygon]) -> Arrangement:
     return Arrangement(
         solid=_as_multipolygon(shapely.union_all(faces)),
         groups=_group_polygons(parts, group_of, frame),
-        arrays=_pack(parts, group_of, frame, edges, sectors),
+        arrays=_tables(parts, group_of, frame, edges, sectors),
         corners=corners,
         corner_group=corner_group,
     )
@@ -275,70 +275,96 @@ def _group_polygons(
     return tuple(_as_multipolygon(shapely.union_all(m)) for m in members)
 
 
-def _pack(
+def _tables(
     parts: Sequence[Part],
     group_of: Sequence[int],
     frame: int,
     edges: _Edges,
     sectors: Sequence[Sector],
 ) -> ObstacleArrays:
-    part_of_group: list[list[Part]] = [[] for _ in range(frame + 1)]
-    boundary: list[list[tuple[float, ...]]] = [[] for _ in range(frame + 1)]
-    border: list[list[tuple[float, ...]]] = [[] for _ in range(frame + 1)]
-    for part, group in zip(parts, group_of, strict=True):
-        part_of_group[group].append(part)
+    """Everything in the layout of the kernels; ``parts`` are sorted by group."""
+    boundary, contacts = _boundaries_and_contacts(group_of, frame, edges)
+    pinches, ways = _pinches(parts, edges, sectors)
+    part_rows = _spans([len(part) for part in parts])
+    group_rows = _spans([group_of.count(group) for group in range(frame + 1)])
+    return ObstacleArrays(
+        groups=_table(
+            [
+                (*_box([p for part in parts[first:last] for p in part]), first, last, *rest)
+                for (first, last), *rest in zip(
+                    group_rows,
+                    *zip(*_spans([len(b) for b in boundary]), strict=True),
+                    *zip(*_spans([len(c) for c in contacts]), strict=True),
+                    strict=True,
+                )
+            ],
+            10,
+        ),
+        parts=_table([(*_box(p), *rows) for p, rows in zip(parts, part_rows, strict=True)], 6),
+        vertices=_table([(*e[0], edges.is_seam(e)) for part in parts for e in _edges_of(part)], 3),
+        boundary=_table([(*a, *b) for group in boundary for a, b in group], 4),
+        contacts=_table([(*a, *b) for group in contacts for a, b in group], 4),
+        pinches=_table(
+            [(*v, *rows) for v, rows in zip(pinches, _spans([len(w) for w in ways]), strict=True)],
+            4,
+        ),
+        ways=_table([way for around in ways for way in around], 2),
+    )
+
+
+Stretch = tuple[Point, Point]
+
+
+def _boundaries_and_contacts(
+    group_of: Sequence[int], frame: int, edges: _Edges
+) -> tuple[list[list[Stretch]], list[list[Stretch]]]:
+    """For each group its edges towards anything else, and where it touches the frame."""
+    boundary: list[list[Stretch]] = [[] for _ in range(frame + 1)]
+    contacts: list[list[Stretch]] = [[] for _ in range(frame + 1)]
     for edge, group in edges.group.items():
         other = edges.group.get(edge[::-1])
         if other != group and not edges.is_outer(edge):
-            boundary[group].append((*edge[0], *edge[1]))
-        if other == edges.frame and group != edges.frame:
-            border[group].append((*edge[0], *edge[1]))
+            boundary[group].append(edge)
+        if other == frame and group != frame:
+            contacts[group].append(edge)
     for v, incident in edges.parts_at.items():
         groups = {group_of[i] for i in incident}
         if frame in groups:
             for group in groups - {frame}:
-                border[group].append((*v, *v))
+                contacts[group].append((v, v))
+    return boundary, contacts
+
+
+def _pinches(
+    parts: Sequence[Part], edges: _Edges, sectors: Sequence[Sector]
+) -> tuple[list[Point], list[list[Point]]]:
+    """Vertices with more than one free sector, and a direction into each part that meets them."""
     count: dict[Point, int] = defaultdict(int)
     for v, _, _ in sectors:
         count[v] += 1
     pinches = sorted(v for v, n in count.items() if n > 1)
-    ways = [[_way_into(parts[i], v) for i in edges.parts_at[v]] for v in pinches]
-    group_xy = [np.array([p for part in g for p in part]).reshape(-1, 2) for g in part_of_group]
-    return ObstacleArrays(
-        part_xy=_frozen(np.array([p for part in parts for p in part], dtype=np.float64)),
-        part_start=_starts([len(part) for part in parts]),
-        part_box=_frozen(np.array([_box(np.array(part)) for part in parts])),
-        seam=_frozen(
-            np.array([edges.is_seam(e) for part in parts for e in _edges_of(part)], dtype=np.uint8)
-        ),
-        group_start=_starts([len(g) for g in part_of_group]),
-        group_box=_frozen(np.array([_box(xy) for xy in group_xy])),
-        boundary=_stacked(boundary, 4),
-        boundary_start=_starts([len(b) for b in boundary]),
-        border=_stacked(border, 4),
-        border_start=_starts([len(b) for b in border]),
-        pinch_xy=_frozen(np.array(pinches, dtype=np.float64).reshape(-1, 2)),
-        pinch_start=_starts([len(w) for w in ways]),
-        pinch_way=_stacked(ways, 2),
-    )
+    return pinches, [[_way_into(parts[i], v) for i in edges.parts_at[v]] for v in pinches]
 
 
-def _way_into(part: Part, v: Point) -> tuple[float, float]:
+def _way_into(part: Part, v: Point) -> Point:
     """A direction from vertex v to the inside of a convex part: to the mean of its vertices."""
     x, y = np.mean(part, axis=0).tolist()
     return x - v[0], y - v[1]
 
 
-def _box(xy: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.concatenate([xy.min(axis=0), xy.max(axis=0)])
+def _box(points: Sequence[Point]) -> tuple[float, float, float, float]:
+    xs, ys = zip(*points, strict=True)
+    return min(xs), min(ys), max(xs), max(ys)
 
 
-def _starts(lengths: Sequence[int]) -> NDArray[np.int64]:
-    return _frozen(np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64))
+def _spans(lengths: Sequence[int]) -> list[tuple[int, int]]:
+    """Rows "from" and "to" of consecutive runs of these lengths."""
+    ends = list(accumulate(lengths, initial=0))
+    return list(pairwise(ends))
 
 
-def _stacked(rows: Sequence[Sequence[tuple[float, ...]]], width: int) -> NDArray[np.float64]:
-    return _frozen(np.array([r for g in rows for r in g], dtype=np.float64).reshape(-1, width))
+def _table(rows: Sequence[tuple[float, ...]], width: int) -> NDArray[np.float64]:
+    return _frozen(np.array(rows, dtype=np.float64).reshape(-1, width))
 
 
 def _frozen(array: Array) -> Array:

@@ -14,39 +14,38 @@ from suite.geometry.predicates import orientation
 
 
 class ObstacleArrays(NamedTuple):
-    """Obstacles and the frame around the workspace, as flat arrays. Metres.
+    """Obstacles and the frame around the workspace, as tables: (rows, columns) float64. Metres.
 
     An obstacle group is a set of convex parts that touch; the last group is the frame. Vertices
-    run counter-clockwise, so that a part lies on the left of each of its edges.
+    run counter-clockwise, so that a part lies on the left of each of its edges. All tables have
+    one type and there are few of them: handing an array to a kernel costs more than a box test.
+    Numbers of rows are whole, "from" and "to" (exclusive).
 
-    part_xy : (V, 2) float64, vertices of all parts, one part after the other.
-    part_start : (P + 1,) int64, rows of ``part_xy`` where each part begins.
-    part_box : (P, 4) float64, xmin, ymin, xmax, ymax of each part (the paper's MMO).
-    seam : (V,) uint8, 1 where the edge from vertex i to the next has solid on both sides.
-    group_start : (G + 1,) int64, parts where each group begins.
-    group_box : (G, 4) float64, xmin, ymin, xmax, ymax of each group (the paper's MMG).
-    boundary : (E, 4) float64, x, y, x, y of the edges between a group and anything else.
-    boundary_start : (G + 1,) int64, rows of ``boundary`` where each group begins.
-    border : (B, 4) float64, the stretches (or points) in which a group touches the frame.
-    border_start : (G + 1,) int64, rows of ``border`` where each group begins.
-    pinch_xy : (K, 2) float64, points where free space is cut by parts that meet in a point only.
-    pinch_start : (K + 1,) int64, rows of ``pinch_way`` where each pinch point begins.
-    pinch_way : (W, 2) float64, a direction into each part that meets the pinch point.
+    groups : box XMIN, YMIN, XMAX, YMAX of a group (the paper's MMG); rows FIRST to LAST of its
+        parts, FIRST_EDGE to LAST_EDGE in ``boundary``, FIRST_CONTACT to LAST_CONTACT in
+        ``contacts``.
+    parts : box of a convex part (the paper's MMO); rows FIRST to LAST of its vertices.
+    vertices : x, y, and SEAM: 1 where the edge to the part's next vertex has solid on both sides.
+    boundary : x, y, x, y of the edges between a group and anything else.
+    contacts : x, y, x, y of the stretches (or points) in which a group touches the frame.
+    pinches : x, y of a point where free space is cut by parts that meet in a point only; rows
+        FIRST_WAY to LAST_WAY in ``ways``.
+    ways : x, y, a direction into each part that meets a pinch point.
     """
 
-    part_xy: np.ndarray
-    part_start: np.ndarray
-    part_box: np.ndarray
-    seam: np.ndarray
-    group_start: np.ndarray
-    group_box: np.ndarray
+    groups: np.ndarray
+    parts: np.ndarray
+    vertices: np.ndarray
     boundary: np.ndarray
-    boundary_start: np.ndarray
-    border: np.ndarray
-    border_start: np.ndarray
-    pinch_xy: np.ndarray
-    pinch_start: np.ndarray
-    pinch_way: np.ndarray
+    contacts: np.ndarray
+    pinches: np.ndarray
+    ways: np.ndarray
+
+
+XMIN, YMIN, XMAX, YMAX, FIRST, LAST = range(6)
+FIRST_EDGE, LAST_EDGE, FIRST_CONTACT, LAST_CONTACT = range(6, 10)
+SEAM = 2
+FIRST_WAY, LAST_WAY = 2, 3
 
 
 @njit(cache=True)
@@ -71,19 +70,19 @@ def _shares_seam(
 
 @njit(cache=True)
 def _point_enters_part(
-    x: float, y: float, part_xy: np.ndarray, seam: np.ndarray, first: int, last: int
+    x: float, y: float, vertices: np.ndarray, first: int, last: int
 ) -> bool:
     """Whether a point lies in the interior of a convex part, or between the ends of its seams."""
     inside = True
-    px, py = part_xy[last, 0], part_xy[last, 1]
+    px, py = vertices[last, 0], vertices[last, 1]
     edge = last
     for i in range(first, last + 1):
-        qx, qy = part_xy[i, 0], part_xy[i, 1]
+        qx, qy = vertices[i, 0], vertices[i, 1]
         side = orientation(px, py, qx, qy, x, y)
         if side < 0:
             return False
         if side == 0:
-            if seam[edge] and _between(px, py, qx, qy, x, y):
+            if vertices[edge, SEAM] != 0.0 and _between(px, py, qx, qy, x, y):
                 return True
             inside = False
         px, py, edge = qx, qy, i
@@ -96,18 +95,17 @@ def _runs_along_seam(
     ay: float,
     bx: float,
     by: float,
-    part_xy: np.ndarray,
-    seam: np.ndarray,
+    vertices: np.ndarray,
     first: int,
     last: int,
 ) -> bool:
     """Whether segment a-b lies on the line of a seam of a part and overlaps it."""
-    px, py = part_xy[last, 0], part_xy[last, 1]
+    px, py = vertices[last, 0], vertices[last, 1]
     edge = last
     for i in range(first, last + 1):
-        qx, qy = part_xy[i, 0], part_xy[i, 1]
+        qx, qy = vertices[i, 0], vertices[i, 1]
         if (
-            seam[edge]
+            vertices[edge, SEAM] != 0.0
             and orientation(bx, by, px, py, ax, ay) == 0
             and orientation(bx, by, qx, qy, ax, ay) == 0
             and _shares_seam(ax, ay, bx, by, px, py, qx, qy)
@@ -123,33 +121,32 @@ def segment_enters_part(
     ay: float,
     bx: float,
     by: float,
-    part_xy: np.ndarray,
-    seam: np.ndarray,
+    vertices: np.ndarray,
     first: int,
     last: int,
 ) -> bool:
     """Whether segment a-b meets the interior of a convex part, or runs along one of its seams.
 
-    The part has the vertices ``first`` to ``last`` of ``part_xy``. Separating axes: two convex
+    The part has the vertices ``first`` to ``last`` of ``vertices``. Separating axes: two convex
     sets in the plane are apart if and only if the line of one of their edges separates them
     (Gottschalk 1996). Touching is allowed, entering is not.
     """
     if ax == bx and ay == by:
-        return _point_enters_part(ax, ay, part_xy, seam, first, last)
+        return _point_enters_part(ax, ay, vertices, first, last)
     # The line of the segment first: it separates most parts whose box was met.
     left = False
     right = False
     on_line = 0
     for i in range(first, last + 1):
-        side = orientation(bx, by, part_xy[i, 0], part_xy[i, 1], ax, ay)
+        side = orientation(bx, by, vertices[i, 0], vertices[i, 1], ax, ay)
         left = left or side > 0
         right = right or side < 0
         on_line += side == 0
     if not (left and right):
-        return on_line > 1 and _runs_along_seam(ax, ay, bx, by, part_xy, seam, first, last)
-    px, py = part_xy[last, 0], part_xy[last, 1]
+        return on_line > 1 and _runs_along_seam(ax, ay, bx, by, vertices, first, last)
+    px, py = vertices[last, 0], vertices[last, 1]
     for i in range(first, last + 1):
-        qx, qy = part_xy[i, 0], part_xy[i, 1]
+        qx, qy = vertices[i, 0], vertices[i, 1]
         if (
             orientation(qx, qy, ax, ay, px, py) <= 0
             and orientation(qx, qy, bx, by, px, py) <= 0
@@ -161,55 +158,61 @@ def segment_enters_part(
 
 @njit(cache=True, forceinline=True)
 def _boxes_apart(
-    xmin: float, xmax: float, ymin: float, ymax: float, boxes: np.ndarray, i: int
+    xmin: float, xmax: float, ymin: float, ymax: float, table: np.ndarray, row: int
 ) -> bool:
-    """Whether a box and box i of ``boxes`` have no point in common."""
+    """Whether a box and the box in a row of ``groups`` or ``parts`` have no point in common."""
     return (
-        xmin > boxes[i, 2] or xmax < boxes[i, 0] or ymin > boxes[i, 3] or ymax < boxes[i, 1]
+        xmin > table[row, XMAX]
+        or xmax < table[row, XMIN]
+        or ymin > table[row, YMAX]
+        or ymax < table[row, YMIN]
     )
 
 
 @njit(cache=True, forceinline=True)
 def next_group_entered(
-    ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays, group: int
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    groups: np.ndarray,
+    parts: np.ndarray,
+    vertices: np.ndarray,
+    group: int,
 ) -> int:
     """First obstacle group, from number ``group`` on, that segment a-b enters; -1 if none.
 
     Boxes first: those of the groups, then those of their parts (paper II-B).
     """
-    # Each access to a field of the tuple counts references, which costs more than a box test.
-    group_box, group_start = arrays.group_box, arrays.group_start
-    part_box, part_start = arrays.part_box, arrays.part_start
-    part_xy, seam = arrays.part_xy, arrays.seam
     xmin, xmax = min(ax, bx), max(ax, bx)
     ymin, ymax = min(ay, by), max(ay, by)
-    for g in range(group, group_box.shape[0]):
-        if _boxes_apart(xmin, xmax, ymin, ymax, group_box, g):
+    for g in range(group, groups.shape[0]):
+        if _boxes_apart(xmin, xmax, ymin, ymax, groups, g):
             continue
-        for part in range(group_start[g], group_start[g + 1]):
-            if _boxes_apart(xmin, xmax, ymin, ymax, part_box, part):
+        for part in range(int(groups[g, FIRST]), int(groups[g, LAST])):
+            if _boxes_apart(xmin, xmax, ymin, ymax, parts, part):
                 continue
-            first, last = part_start[part], part_start[part + 1] - 1
-            if segment_enters_part(ax, ay, bx, by, part_xy, seam, first, last):
+            first, last = int(parts[part, FIRST]), int(parts[part, LAST]) - 1
+            if segment_enters_part(ax, ay, bx, by, vertices, first, last):
                 return g
-        if ax == bx and ay == by and _is_inner_vertex(ax, ay, arrays, g):
+        if ax == bx and ay == by and _is_inner_vertex(ax, ay, groups, parts, vertices, g):
             return g
     return -1
 
 
 @njit(cache=True)
-def _is_inner_vertex(x: float, y: float, arrays: ObstacleArrays, group: int) -> bool:
+def _is_inner_vertex(
+    x: float, y: float, groups: np.ndarray, parts: np.ndarray, vertices: np.ndarray, group: int
+) -> bool:
     """Whether point (x, y) is a vertex of the group with solid, parts and seams, all around it."""
-    part_xy, part_start, seam = arrays.part_xy, arrays.part_start, arrays.seam
     found = False
-    for part in range(part_start.size - 1):
-        last = part_start[part + 1] - 1
-        before = last
-        for i in range(part_start[part], last + 1):
-            if part_xy[i, 0] == x and part_xy[i, 1] == y:
-                if not (seam[before] and seam[i]):
+    for part in range(parts.shape[0]):
+        before = int(parts[part, LAST]) - 1
+        for i in range(int(parts[part, FIRST]), int(parts[part, LAST])):
+            if vertices[i, 0] == x and vertices[i, 1] == y:
+                if vertices[before, SEAM] == 0.0 or vertices[i, SEAM] == 0.0:
                     return False
-                if arrays.group_start[group] <= part < arrays.group_start[group + 1]:
+                if groups[group, FIRST] <= part < groups[group, LAST]:
                     found = True
             before = i
     return found
@@ -231,22 +234,27 @@ def _way_is_left(ux: float, uy: float, wx: float, wy: float, mx: float, my: floa
 
 @njit(cache=True)
 def turn_is_closed(
-    ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays, pinch: int
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    pinches: np.ndarray,
+    ways: np.ndarray,
+    pinch: int,
 ) -> bool:
     """Whether a path a -> pinch point -> b slips between two parts that meet in that point.
 
     It does if there is solid on both of its sides: then no path with clearance comes near it.
     """
-    x = arrays.pinch_xy[pinch, 0]
-    y = arrays.pinch_xy[pinch, 1]
+    x, y = pinches[pinch, 0], pinches[pinch, 1]
     ux, uy = ax - x, ay - y
     wx, wy = bx - x, by - y
     if _cross(ux, uy, wx, wy) == 0.0 and ux * wx + uy * wy > 0.0:
         return False  # back the way it came
     left = False
     right = False
-    for i in range(arrays.pinch_start[pinch], arrays.pinch_start[pinch + 1]):
-        if _way_is_left(ux, uy, wx, wy, arrays.pinch_way[i, 0], arrays.pinch_way[i, 1]):
+    for i in range(int(pinches[pinch, FIRST_WAY]), int(pinches[pinch, LAST_WAY])):
+        if _way_is_left(ux, uy, wx, wy, ways[i, 0], ways[i, 1]):
             left = True
         else:
             right = True
@@ -255,34 +263,62 @@ def turn_is_closed(
 
 @njit(cache=True)
 def segment_slips_through(
-    ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays
+    ax: float, ay: float, bx: float, by: float, pinches: np.ndarray, ways: np.ndarray
 ) -> bool:
     """Whether segment a-b passes between two parts through the point in which they meet."""
-    for k in range(arrays.pinch_xy.shape[0]):
-        x = arrays.pinch_xy[k, 0]
-        y = arrays.pinch_xy[k, 1]
+    for k in range(pinches.shape[0]):
+        x, y = pinches[k, 0], pinches[k, 1]
         if (
             orientation(ax, ay, bx, by, x, y) == 0
             and _between(ax, ay, bx, by, x, y)
-            and turn_is_closed(ax, ay, bx, by, arrays, k)
+            and turn_is_closed(ax, ay, bx, by, pinches, ways, k)
         ):
             return True
     return False
 
 
 @njit(cache=True)
-def segment_enters(ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays) -> bool:
-    """Whether segment a-b leaves free space: enters an obstacle, the frame, or a closed passage."""
-    if next_group_entered(ax, ay, bx, by, arrays, 0) >= 0:
+def segment_enters_tables(
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    groups: np.ndarray,
+    parts: np.ndarray,
+    vertices: np.ndarray,
+    pinches: np.ndarray,
+    ways: np.ndarray,
+) -> bool:
+    """Whether segment a-b leaves free space: enters an obstacle, the frame, or a closed passage.
+
+    With only the tables that it reads, for callers that come from Python for every segment.
+    """
+    if next_group_entered(ax, ay, bx, by, groups, parts, vertices, 0) >= 0:
         return True
-    return arrays.pinch_xy.shape[0] > 0 and segment_slips_through(ax, ay, bx, by, arrays)
+    return segment_slips_through(ax, ay, bx, by, pinches, ways)
 
 
 @njit(cache=True)
-def pinch_at(x: float, y: float, arrays: ObstacleArrays) -> int:
-    """Index of the pinch point at (x, y), or -1."""
-    for k in range(arrays.pinch_xy.shape[0]):
-        if arrays.pinch_xy[k, 0] == x and arrays.pinch_xy[k, 1] == y:
+def segment_enters(ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays) -> bool:
+    """Whether segment a-b leaves free space: enters an obstacle, the frame, or a closed passage."""
+    return segment_enters_tables(
+        ax,
+        ay,
+        bx,
+        by,
+        arrays.groups,
+        arrays.parts,
+        arrays.vertices,
+        arrays.pinches,
+        arrays.ways,
+    )
+
+
+@njit(cache=True)
+def pinch_at(x: float, y: float, pinches: np.ndarray) -> int:
+    """Row of the pinch point at (x, y), or -1."""
+    for k in range(pinches.shape[0]):
+        if pinches[k, 0] == x and pinches[k, 1] == y:
             return k
     return -1
 
@@ -298,7 +334,7 @@ def first_collision(path: np.ndarray, arrays: ObstacleArrays) -> int:
         bx, by = path[i + 1, 0], path[i + 1, 1]
         if segment_enters(ax, ay, bx, by, arrays):
             return i
-        k = pinch_at(bx, by, arrays)
+        k = pinch_at(bx, by, arrays.pinches)
         j = i + 2
         while k >= 0 and j < path.shape[0] and path[j, 0] == bx and path[j, 1] == by:
             j += 1  # a path that waits in the pinch point bends there all the same
@@ -306,7 +342,7 @@ def first_collision(path: np.ndarray, arrays: ObstacleArrays) -> int:
         if (
             arrives
             and j < path.shape[0]
-            and turn_is_closed(ax, ay, path[j, 0], path[j, 1], arrays, k)
+            and turn_is_closed(ax, ay, path[j, 0], path[j, 1], arrays.pinches, arrays.ways, k)
         ):
             return i
     return -1

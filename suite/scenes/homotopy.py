@@ -18,7 +18,12 @@ from numba import njit
 from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon
 
-from suite.geometry.kernels import ObstacleArrays, segment_enters
+from suite.geometry.kernels import (
+    FIRST_CONTACT,
+    LAST_CONTACT,
+    ObstacleArrays,
+    segment_enters,
+)
 from suite.geometry.predicates import orientation
 from suite.scene import Query, Scene
 
@@ -237,11 +242,11 @@ def _ray_sources(scene: Scene, xy: NDArray[np.float64]) -> list[_Ray]:
 
     No two share their x, and none starts at the x of a node: a segment crosses a ray or does not.
     """
-    border_start = scene.arrays.border_start
+    table = scene.arrays.groups
     taken = set(xy[:, 0].tolist())
     rays: list[_Ray] = []
     for number, group in enumerate(scene.arrangement.groups, 1):
-        if border_start[number - 1] == border_start[number]:
+        if table[number - 1, FIRST_CONTACT] == table[number - 1, LAST_CONTACT]:
             x, y = _point_inside(group, taken)
             taken.add(x)
             rays.append(_Ray(x, y, number))

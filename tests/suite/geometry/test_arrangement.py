@@ -9,6 +9,15 @@ from shapely.affinity import rotate, scale, translate
 from shapely.geometry import MultiPolygon, Polygon, box
 
 from suite.geometry.arrangement import Arrangement, arrange
+from suite.geometry.kernels import (
+    FIRST,
+    FIRST_CONTACT,
+    FIRST_EDGE,
+    LAST,
+    LAST_CONTACT,
+    LAST_EDGE,
+    SEAM,
+)
 from suite.geometry.predicates import orientation
 from tests.suite.geometry.lattice import counts, frame_around, random_solid, star
 
@@ -18,19 +27,20 @@ on_lattice = settings(max_examples=counts(60, 20))
 
 
 def parts(arrangement: Arrangement) -> list[np.ndarray]:
-    arrays = arrangement.arrays
-    return np.split(arrays.part_xy, arrays.part_start[1:-1])
+    tables = arrangement.arrays
+    rows = tables.parts[:, [FIRST, LAST]].astype(int)
+    return [tables.vertices[first:last, :2] for first, last in rows]
 
 
 def parts_of_group(arrangement: Arrangement, group: int) -> list[np.ndarray]:
-    first, last = arrangement.arrays.group_start[group : group + 2]
+    first, last = arrangement.arrays.groups[group, [FIRST, LAST]].astype(int)
     return parts(arrangement)[first:last]
 
 
 def edges(arrangement: Arrangement, *, seams: bool) -> set[tuple[float, ...]]:
     arrays = arrangement.arrays
     ends = np.vstack([np.hstack([xy, np.roll(xy, -1, axis=0)]) for xy in parts(arrangement)])
-    return set(map(tuple, ends[(arrays.seam == 1) == seams].tolist()))
+    return set(map(tuple, ends[(arrays.vertices[:, SEAM] == 1) == seams].tolist()))
 
 
 def reverse(directed: set[tuple[float, ...]]) -> set[tuple[float, ...]]:
@@ -127,15 +137,15 @@ def test_obstacles_that_touch_are_one_group(seed):
 def test_boxes_fit_and_the_box_of_a_group_contains_those_of_its_parts(draw, seed):
     arrangement = draw(seed)[2]
     arrays = arrangement.arrays
-    for xy, bounds in zip(parts(arrangement), arrays.part_box, strict=True):
+    for xy, bounds in zip(parts(arrangement), arrays.parts[:, :4], strict=True):
         assert bounds.tolist() == [*xy.min(axis=0), *xy.max(axis=0)]
-    for group, (xmin, ymin, xmax, ymax) in enumerate(arrays.group_box):
-        first, last = arrays.group_start[group : group + 2]
-        boxes = arrays.part_box[first:last]
+    for group, (xmin, ymin, xmax, ymax) in enumerate(arrays.groups[:, :4]):
+        first, last = arrays.groups[group, [FIRST, LAST]].astype(int)
+        boxes = arrays.parts[first:last, :4]
         assert [xmin, ymin] == boxes[:, :2].min(axis=0).tolist()
         assert [xmax, ymax] == boxes[:, 2:].max(axis=0).tolist()
     for group, polygon in enumerate(arrangement.groups):
-        assert polygon.bounds == tuple(arrays.group_box[group])
+        assert polygon.bounds == tuple(arrays.groups[group, :4])
 
 
 @on_lattice
@@ -173,7 +183,7 @@ def test_the_boundary_of_a_group_is_that_of_its_polygons(draw, seed):
     arrangement = draw(seed)[2]
     arrays = arrangement.arrays
     for group, polygon in enumerate(arrangement.groups):
-        first, last = arrays.boundary_start[group : group + 2]
+        first, last = arrays.groups[group, [FIRST_EDGE, LAST_EDGE]].astype(int)
         a, b = np.hsplit(arrays.boundary[first:last], 2)
         assert np.hypot(*(b - a).T).sum() == pytest.approx(polygon.length, rel=1e-9)
 
@@ -184,8 +194,8 @@ def test_the_border_of_a_group_is_where_it_touches_the_frame(seed):
     room, _, arrangement = lattice(seed)
     arrays = arrangement.arrays
     for group, polygon in enumerate(arrangement.groups):
-        first, last = arrays.border_start[group : group + 2]
-        rows = arrays.border[first:last]
+        first, last = arrays.groups[group, [FIRST_CONTACT, LAST_CONTACT]].astype(int)
+        rows = arrays.contacts[first:last]
         contact = polygon.intersection(room.boundary)
         assert np.hypot(*(rows[:, 2:] - rows[:, :2]).T).sum() == pytest.approx(contact.length)
         assert (rows.size > 0) == (not contact.is_empty)
@@ -200,7 +210,7 @@ def test_all_arrays_are_read_only():
 def test_the_last_group_is_the_frame():
     empty = arrange(ROOM, [])
     assert empty.groups == ()
-    assert empty.arrays.group_box.tolist() == [[-2.5, -2.5, 12.5, 12.5]]
+    assert empty.arrays.groups[:, :4].tolist() == [[-2.5, -2.5, 12.5, 12.5]]
     assert empty.solid.area == 15.0 * 15.0 - 100.0
 
 
@@ -234,7 +244,7 @@ def test_holes_that_touch_each_other_and_the_outline_are_cut_out():
     arrangement = arrange(ROOM, [ring])
     assert arrangement.groups == (MultiPolygon([arrangement.groups[0].geoms[0]]),)
     assert arrangement.groups[0].equals(ring)
-    assert len(arrangement.arrays.pinch_xy) == 2
+    assert len(arrangement.arrays.pinches) == 2
 
 
 @pytest.mark.parametrize("offset", [0.0, 1e3, 1e5, 1e7])
