@@ -1,1 +1,1 @@
-"""Planners to compare with: OMPL's, a plain GA, the exact solver. Same rights as ``kbga``, no more."""
+"""Planners to compare with: OMPL's, a plain GA, the exact solver; same rights as ``kbga``."""

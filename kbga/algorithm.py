@@ -53,6 +53,9 @@ class KBGA:
     best_path : (n, 2) float64, metres, the best feasible path so far; None before there is one.
     best_cost : float, its length, metres; infinite before there is one.
     generation_of_best : int, the generation in which it was found.
+    lowest_cost : float, the lowest cost of any chromosome so far, penalties included, metres: the
+        paper's best_sofar, which need not be feasible.
+    generation_of_lowest : int, the generation in which it was found.
     """
 
     def __init__(
@@ -81,6 +84,8 @@ class KBGA:
         self.best_path: NDArray[np.float64] | None = None
         self.best_cost = float("inf")
         self.generation_of_best = 0
+        self.lowest_cost = float("inf")
+        self.generation_of_lowest = 0
         first_population(
             self.population,
             query.start,
@@ -122,8 +127,12 @@ class KBGA:
         return self._take_best()
 
     def _take_best(self) -> bool:
-        best = best_feasible(self.population)
         chromosomes = self.population.chromosomes
+        lowest = float(chromosomes["cost"].min())
+        if lowest < self.lowest_cost:
+            self.lowest_cost = lowest
+            self.generation_of_lowest = self.generation
+        best = best_feasible(self.population)
         if best < 0 or not chromosomes["cost"][best] < self.best_cost:
             return False
         self.best_path = path_of(self.population, best)

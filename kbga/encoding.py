@@ -29,7 +29,7 @@ class Lattice(NamedTuple):
 
 
 def make_lattice(bounds: tuple[float, float, float, float], resolution: int) -> Lattice:
-    """Lattice of ``resolution`` units per side over a workspace's bounds (xmin, ymin, xmax, ymax)."""
+    """Lattice of ``resolution`` units per side over bounds xmin, ymin, xmax, ymax (metres)."""
     xmin, ymin, xmax, ymax = bounds
     return Lattice(
         xmin, ymin, (xmax - xmin) / resolution, (ymax - ymin) / resolution, resolution + 1
@@ -170,7 +170,7 @@ def close_columns(population: Population, i: int, first: int, count: int) -> Non
 @njit(cache=True)
 def contains(nodes: np.ndarray, i: int, size: int, gene: int) -> bool:
     """Whether a lattice node is one of the ``size`` intermediate nodes of chromosome i."""
-    for k in range(1, size + 1):
+    for k in range(1, size + 1):  # noqa: SIM110 (any() of a generator does not compile)
         if nodes[i, k].gene == gene:
             return True
     return False

@@ -5,8 +5,6 @@ group that it enters (Eq. (2), Fig. 3). A segment is evaluated once, when it com
 what was found stays with the chromosome.
 """
 
-import math
-
 import numpy as np
 from numba import njit
 

@@ -30,6 +30,8 @@ class KBGAPlanner(Planner):
     ) -> Plan:
         """Evolve until a stop criterion of the settings or the budget ends the run.
 
+        Without a feasible path, the claimed cost is that of the best infeasible one, penalties
+        included, as the paper's Table 1 has it for the GA without specialised operators.
         The trace has a row per generation: best, mean, feasible_share, diversity and checks.
         A budget that ends within a generation ends the run after it.
         """
@@ -53,12 +55,13 @@ class KBGAPlanner(Planner):
         ga = KBGA(scene, query, self.settings, rng)
         recorder.snapshot("first population", ga.paths() if recorder.keep_snapshots else [])
         path = ga.run(follow)
+        found = path is not None
         return Plan(
-            PlanStatus.EXHAUSTED if path is None else PlanStatus.SOLVED,
+            PlanStatus.SOLVED if found else PlanStatus.EXHAUSTED,
             path,
-            claimed_cost=None if path is None else ga.best_cost,
+            claimed_cost=ga.best_cost if found else ga.lowest_cost,
             generations=ga.generation,
-            generation_of_best=None if path is None else ga.generation_of_best,
+            generation_of_best=ga.generation_of_best if found else ga.generation_of_lowest,
             checks=ga.checks,
         )
 

@@ -79,7 +79,9 @@ def _nodes_near_corners(
             for margin in range(2):
                 before = count
                 for j in range(int(np.floor(row)) - margin, int(np.ceil(row)) + margin + 1):
-                    for i in range(int(np.floor(column)) - margin, int(np.ceil(column)) + margin + 1):
+                    for i in range(
+                        int(np.floor(column)) - margin, int(np.ceil(column)) + margin + 1
+                    ):
                         if not (0 <= i < lattice.side and 0 <= j < lattice.side):
                             continue
                         node = j * lattice.side + i

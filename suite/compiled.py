@@ -37,7 +37,7 @@ def use_cache_of_these_sources() -> Path:
     folder = top / digest.hexdigest()[:16]
     if not folder.is_dir():
         _make_room(top)
-    numba.config.CACHE_DIR = str(folder)
+    numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
     return folder
 
 

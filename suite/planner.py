@@ -222,9 +222,14 @@ class Planner(ABC):
         Plan
         """
 
-    def warm_up(self) -> None:
+    def warm_up(self) -> None:  # noqa: B027 (optional: empty by default)
         """Compile and import whatever the first ``plan`` would; called outside the clock."""
 
-    def refuse(self, scene: Scene, query: Query, budget: Budget) -> str | None:
+    def refuse(  # the default refuses nothing
+        self,
+        scene: Scene,  # noqa: ARG002
+        query: Query,  # noqa: ARG002
+        budget: Budget,  # noqa: ARG002
+    ) -> str | None:
         """A sentence that says why this planner can't do this run; None if it can."""
         return None

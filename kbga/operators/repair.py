@@ -1,4 +1,4 @@
-"""Repair (paper II-C): insert a node into an infeasible segment, found near the obstacle it hits."""
+"""Repair (paper II-C): insert a node into an infeasible segment, near the obstacle it hits."""
 
 import math
 

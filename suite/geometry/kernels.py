@@ -69,9 +69,7 @@ def _shares_seam(
 
 
 @njit(cache=True)
-def _point_enters_part(
-    x: float, y: float, vertices: np.ndarray, first: int, last: int
-) -> bool:
+def _point_enters_part(x: float, y: float, vertices: np.ndarray, first: int, last: int) -> bool:
     """Whether a point lies in the interior of a convex part, or between the ends of its seams."""
     inside = True
     px, py = vertices[last, 0], vertices[last, 1]
@@ -147,10 +145,7 @@ def segment_enters_part(
     px, py = vertices[last, 0], vertices[last, 1]
     for i in range(first, last + 1):
         qx, qy = vertices[i, 0], vertices[i, 1]
-        if (
-            orientation(qx, qy, ax, ay, px, py) <= 0
-            and orientation(qx, qy, bx, by, px, py) <= 0
-        ):
+        if orientation(qx, qy, ax, ay, px, py) <= 0 and orientation(qx, qy, bx, by, px, py) <= 0:
             return False
         px, py = qx, qy
     return True
