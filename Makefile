@@ -5,6 +5,7 @@ BIN := .venv/bin
 STAMP := .venv/.installed
 STORE ?= out/paper-static.db
 JOBS ?= 2
+ARGS ?=
 PACKAGES := suite kbga baselines
 
 .PHONY: setup bench test test-slow lint perf clean
@@ -19,7 +20,7 @@ $(STAMP): pyproject.toml
 
 bench: setup
 	mkdir -p $(dir $(STORE))
-	$(BIN)/kbga-bench run paper-static --store $(STORE) --jobs $(JOBS)
+	$(BIN)/kbga-bench run paper-static --store $(STORE) --jobs $(JOBS) $(ARGS)
 	$(BIN)/kbga-bench tables $(STORE)
 
 # The kernels' claims hold compiled and interpreted: the second line runs them without the JIT.

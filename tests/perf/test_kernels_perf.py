@@ -1,0 +1,50 @@
+"""How long the kernels take, compiled: `make perf`. Skipped in the ordinary test run."""
+
+import numpy as np
+import pytest
+from numba import njit
+
+from suite.exact import shortest_path
+from suite.geometry.kernels import segment_enters, segment_enters_tables
+from suite.scenes.catalogue import load_scene, scene_names
+
+SEGMENTS = 1000
+
+
+@njit
+def _count_free(segments: np.ndarray, arrays) -> int:
+    free = 0
+    for i in range(segments.shape[0]):
+        if not segment_enters(
+            segments[i, 0], segments[i, 1], segments[i, 2], segments[i, 3], arrays
+        ):
+            free += 1
+    return free
+
+
+def _segments() -> np.ndarray:
+    """Segments between lattice points, up to 20 m apart along each axis."""
+    rng = np.random.default_rng(0)
+    start = rng.integers(0, 101, (SEGMENTS, 2))
+    goal = np.clip(start + rng.integers(-20, 21, (SEGMENTS, 2)), 0, 100)
+    return np.hstack([start, goal]).astype(np.float64)
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_thousand_collision_checks_in_compiled_code(benchmark, name):
+    benchmark.group = "1000 collision checks, compiled"
+    benchmark(_count_free, _segments(), load_scene(name).arrays)
+
+
+def test_one_collision_check_from_python(benchmark):
+    benchmark.group = "one collision check, from Python"
+    arrays = load_scene("zigzag").arrays
+    tables = (arrays.groups, arrays.parts, arrays.vertices, arrays.pinches, arrays.ways)
+    benchmark(segment_enters_tables, 1.0, 2.0, 30.0, 40.0, *tables)
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_exact_shortest_path(benchmark, name):
+    benchmark.group = "exact shortest path"
+    scene = load_scene(name)
+    benchmark(shortest_path, scene, scene.query())

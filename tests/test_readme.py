@@ -1,0 +1,31 @@
+"""What the README promises: its planner is a planner, its numbers are in results."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from suite.planner import Budget, PlanStatus, Recorder
+from suite.referee import judge
+from suite.scenes.catalogue import load_scene
+
+README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_planner_of_the_readme_plans():
+    (source,) = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
+    names: dict = {}
+    exec(compile(source, "README.md", "exec"), names)
+    planner = names["RandomDetour"]()
+    scene = load_scene("double_u")
+    plan = planner.plan(
+        scene, scene.query(), Budget(generations=3000), np.random.default_rng(1), Recorder()
+    )
+    assert plan.status == PlanStatus.SOLVED
+    assert judge(scene, scene.query(), plan.path).valid
+
+
+def test_every_link_of_the_readme_leads_somewhere():
+    links = re.findall(r"\]\((?!http)([^)#]+)\)", README)
+    missing = [link for link in links if not (Path(__file__).parents[1] / link).exists()]
+    assert missing == []
