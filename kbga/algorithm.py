@@ -64,17 +64,18 @@ class KBGA:
         self.settings = settings
         self._rng = rng
         self._problem = make_problem(scene.arrangement, scene.bounds, settings.resolution)
+        # Of one type each: an int among the floats would have the kernels compiled once more.
         self._rates = Rates(
-            settings.crossover_probability,
-            settings.mutation_probability,
-            settings.repair_probability,
-            settings.deletion_probability,
-            settings.improvement_probability,
-            settings.tournament_size,
-            settings.penalty,
-            settings.repair_candidates,
-            settings.improvement_radius,
-            settings.rounds,
+            float(settings.crossover_probability),
+            float(settings.mutation_probability),
+            float(settings.repair_probability),
+            float(settings.deletion_probability),
+            float(settings.improvement_probability),
+            int(settings.tournament_size),
+            float(settings.penalty),
+            int(settings.repair_candidates),
+            int(settings.improvement_radius),
+            int(settings.rounds),
         )
         self.population = empty_population(settings.population_size, settings.max_nodes)
         self._children = empty_population(settings.population_size, settings.max_nodes)
@@ -90,9 +91,9 @@ class KBGA:
             self.population,
             query.start,
             query.goal,
-            settings.initial_nodes,
+            int(settings.initial_nodes),
             self._problem,
-            settings.penalty,
+            self._rates.penalty,
             rng,
             self._counter,
         )
@@ -145,7 +146,7 @@ class KBGA:
         nodes, chromosomes = self.population
         distinct = {
             row["gene"][: size + 1].tobytes()
-            for row, size in zip(nodes, chromosomes["size"], strict=True)
+            for row, size in zip(nodes, chromosomes["intermediate"], strict=True)
         }
         return GenerationReport(
             generation=self.generation,

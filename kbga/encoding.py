@@ -12,6 +12,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from suite.geometry.tolerances import GRID_DECIMALS
+
+
+_CELLS = float(10**GRID_DECIMALS)
+
 
 class Lattice(NamedTuple):
     """A grid over the workspace whose crossings are numbered row by row from its lower left.
@@ -37,21 +42,31 @@ def make_lattice(bounds: tuple[float, float, float, float], resolution: int) -> 
 
 
 @njit(cache=True)
+def _on_grid(x: float) -> float:
+    """Coordinate on the grid of the obstacles, so that a node on a wall or the border stays there.
+
+    0.1 * 3 lies 5e-17 beyond 0.3: without this, inside an obstacle that begins there.
+    """
+    return np.rint(x * _CELLS) / _CELLS
+
+
+@njit(cache=True)
 def node_x(lattice: Lattice, node: int) -> float:
     """Coordinate x of a lattice number, metres."""
-    return lattice.x0 + lattice.dx * (node % lattice.side)
+    return _on_grid(lattice.x0 + lattice.dx * (node % lattice.side))
 
 
 @njit(cache=True)
 def node_y(lattice: Lattice, node: int) -> float:
     """Coordinate y of a lattice number, metres."""
-    return lattice.y0 + lattice.dy * (node // lattice.side)
+    return _on_grid(lattice.y0 + lattice.dy * (node // lattice.side))
 
 
 @njit(cache=True)
 def distance(ax: float, ay: float, bx: float, by: float) -> float:
     """Distance of two points, metres. Not ``hypot``: its guard against overflow costs 10 ns."""
-    return math.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
+    dx, dy = bx - ax, by - ay
+    return math.sqrt(dx * dx + dy * dy)
 
 
 MAX_HITS = 8
@@ -81,17 +96,20 @@ length : d_i of the segment, metres.
 depth : beta_i of the segment, metres; 0 if and only if it is feasible.
 hits, hit_count : numbers of the obstacle groups that it intersects, and how many are noted.
 settled : 1 if improvement found no better place between the same two neighbours.
-needed : 1 if deletion found no benefit between the same two neighbours.
+needed : what deletion found out between the same two neighbours: 0, nothing yet;
+    NEEDED_IF_FEASIBLE, no benefit in a feasible path; NEEDED, none in any path.
 
 A record and not seven arrays: edits move nodes with all that is known of them, in one copy.
 """
 
+NEEDED_IF_FEASIBLE, NEEDED = 1, 2
+
 CHROMOSOME = np.dtype(
-    [("size", np.int64), ("cost", np.float64), ("infeasible", np.int64)], align=True
+    [("intermediate", np.int64), ("cost", np.float64), ("infeasible", np.int64)], align=True
 )
 """A chromosome as a whole.
 
-size : intermediate nodes.
+intermediate : number of intermediate nodes.
 cost : Eq. (1), metres.
 infeasible : number of infeasible segments.
 """
@@ -102,11 +120,11 @@ START, GOAL = -1, -2
 class Population(NamedTuple):
     """P chromosomes of at most M nodes, start and goal included.
 
-    Column 0 holds the start, columns 1 to ``size`` the intermediate nodes, column ``size + 1``
-    the goal. Segment k runs from column k to column k + 1.
+    Column 0 holds the start, columns 1 to ``intermediate`` the intermediate nodes, the column after
+    them the goal. Segment k runs from column k to column k + 1.
 
-    nodes : (P, M) of NODE.
-    chromosomes : (P,) of CHROMOSOME.
+    nodes : (P, M) of NODE, a record array, so that the kernels run without the compiler too.
+    chromosomes : (P,) of CHROMOSOME, a record array.
     """
 
     nodes: np.ndarray
@@ -115,12 +133,15 @@ class Population(NamedTuple):
 
 def empty_population(count: int, max_nodes: int) -> Population:
     """Room for ``count`` chromosomes of at most ``max_nodes`` nodes."""
-    return Population(np.zeros((count, max_nodes), NODE), np.zeros(count, CHROMOSOME))
+    return Population(
+        np.zeros((count, max_nodes), NODE).view(np.recarray),
+        np.zeros(count, CHROMOSOME).view(np.recarray),
+    )
 
 
 def path_of(population: Population, i: int) -> NDArray[np.float64]:
     """Chromosome i as a path (n, 2), metres."""
-    nodes = population.nodes[i, : population.chromosomes["size"][i] + 2]
+    nodes = population.nodes[i, : population.chromosomes["intermediate"][i] + 2]
     return np.column_stack([nodes["x"], nodes["y"]])
 
 
@@ -128,7 +149,7 @@ def path_of(population: Population, i: int) -> NDArray[np.float64]:
 def copy_chromosome(source: Population, i: int, target: Population, j: int) -> None:
     """Copy chromosome i of one population to place j of another, with all that is known of it."""
     nodes, copies = source.nodes, target.nodes
-    for k in range(source.chromosomes[i].size + 2):
+    for k in range(source.chromosomes[i].intermediate + 2):
         copies[j, k] = nodes[i, k]
     target.chromosomes[j] = source.chromosomes[i]
 
@@ -153,18 +174,18 @@ def forget(nodes: np.ndarray, i: int, first: int, last: int) -> None:
 def open_column(population: Population, i: int, k: int) -> None:
     """Make room for a new node at column k; the rest moves up by one."""
     nodes = population.nodes
-    for m in range(population.chromosomes[i].size + 1, k - 1, -1):
+    for m in range(population.chromosomes[i].intermediate + 1, k - 1, -1):
         nodes[i, m + 1] = nodes[i, m]
-    population.chromosomes[i].size += 1
+    population.chromosomes[i].intermediate += 1
 
 
 @njit(cache=True)
 def close_columns(population: Population, i: int, first: int, count: int) -> None:
     """Remove ``count`` nodes from column ``first`` on; the rest moves down."""
     nodes = population.nodes
-    for m in range(first + count, population.chromosomes[i].size + 2):
+    for m in range(first + count, population.chromosomes[i].intermediate + 2):
         nodes[i, m - count] = nodes[i, m]
-    population.chromosomes[i].size -= count
+    population.chromosomes[i].intermediate -= count
 
 
 @njit(cache=True)

@@ -28,6 +28,10 @@ LEAST_DEPTH = 1e-6
 """Depth of a collision that no shift measures, such as slipping through a pinch point, metres: a
 segment is feasible if and only if its depth is zero."""
 
+ON_LINE = 1e-6
+"""Distance from a segment's line below which a contact with the border lies on it, not on a side,
+metres: a slanted border is met only up to rounding."""
+
 
 @njit(cache=True, forceinline=True)
 def _reach(
@@ -56,7 +60,8 @@ def escape_distance(
     Paper Fig. 3: (a) the smaller of the two sides; (b) the whole group must be left behind, so
     each side counts with the group's farthest vertex on it; (c) a side on which the group is
     joined to the border is a dead end. Where both sides are dead ends no shift helps, and both
-    together are taken (ours: deeper than either).
+    together are taken (ours: deeper than either). A segment that runs along the border itself, in
+    the slit below the group, has the dead end under it: only the farther side leads out.
 
     The paper takes "the related vertices in the group"; here these are all of them, also those
     that lie beyond the ends of the segment. Were they left out, a short slanted cut through a
@@ -75,12 +80,14 @@ def escape_distance(
     first = int(arrays.groups[group, FIRST_CONTACT])
     last = int(arrays.groups[group, LAST_CONTACT])
     dead_left, dead_right = _reach(ax, ay, ux, uy, arrays.contacts, first, last)
-    if dead_left > 0.0 and dead_right < 0.0:
+    if dead_left > ON_LINE and dead_right < -ON_LINE:
         return max(LEAST_DEPTH, left - right)
-    if dead_left > 0.0:
+    if dead_left > ON_LINE:
         return max(LEAST_DEPTH, -right)
-    if dead_right < 0.0:
+    if dead_right < -ON_LINE:
         return max(LEAST_DEPTH, left)
+    if last > first:
+        return max(LEAST_DEPTH, left, -right)
     return max(LEAST_DEPTH, min(left, -right))
 
 
@@ -166,7 +173,7 @@ def sum_up(population: Population, i: int, penalty: float) -> None:
     nodes = population.nodes
     cost = 0.0
     infeasible = 0
-    for k in range(population.chromosomes[i].size + 1):
+    for k in range(population.chromosomes[i].intermediate + 1):
         cost += nodes[i, k].length + nodes[i, k].depth * penalty
         if nodes[i, k].depth > 0.0:
             infeasible += 1

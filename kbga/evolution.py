@@ -59,7 +59,7 @@ def first_population(
             set_node(nodes, i, k, gene, problem.lattice)
         nodes[i, size + 1].gene = GOAL
         nodes[i, size + 1].x, nodes[i, size + 1].y = goal[0], goal[1]
-        population.chromosomes[i].size = size
+        population.chromosomes[i].intermediate = size
         forget(nodes, i, 0, size + 1)
         for k in range(size + 1):
             evaluate_segment(nodes, i, k, problem.arrays, counter)

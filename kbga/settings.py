@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import isfinite
+from numbers import Integral
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +66,9 @@ class KBGASettings:
             ("max_generations", 1),
             ("stagnation", 1),
         ):
-            if getattr(self, name) < low:
-                raise ValueError(f"{name} is {getattr(self, name)}; it must be {low} or more")
+            value = getattr(self, name)
+            if not (isinstance(value, Integral) and value >= low):
+                raise ValueError(f"{name} is {value}; it must be a whole number, {low} or more")
         for operator in ("crossover", "mutation", "repair", "deletion", "improvement"):
             name = f"{operator}_probability"
             if not 0.0 <= getattr(self, name) <= 1.0:

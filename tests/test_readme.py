@@ -17,7 +17,7 @@ def test_the_planner_of_the_readme_plans():
     names: dict = {}
     exec(compile(source, "README.md", "exec"), names)
     planner = names["RandomDetour"]()
-    scene = load_scene("double_u")
+    scene = load_scene("obstacles_20")
     plan = planner.plan(
         scene, scene.query(), Budget(generations=3000), np.random.default_rng(1), Recorder()
     )

@@ -16,10 +16,10 @@ def _splice(
     nodes, copies = parents.nodes, children.nodes
     for k in range(cut + 1):
         copies[c, k] = nodes[i, k]
-    end = parents.chromosomes[j].size + 1
+    end = parents.chromosomes[j].intermediate + 1
     for k in range(resume, end + 1):
         copies[c, cut + 1 + k - resume] = nodes[j, k]
-    children.chromosomes[c].size = cut + end - resume
+    children.chromosomes[c].intermediate = cut + end - resume
 
 
 @njit(cache=True)
@@ -31,7 +31,7 @@ def _cut_loop(children: Population, c: int, cut: int) -> bool:
     """
     nodes = children.nodes
     for k in range(1, cut + 1):
-        for m in range(children.chromosomes[c].size, cut, -1):
+        for m in range(children.chromosomes[c].intermediate, cut, -1):
             if nodes[c, m].gene == nodes[c, k].gene:
                 close_columns(children, c, k, m - k)
                 forget(nodes, c, k, k)
@@ -78,7 +78,7 @@ def crossover(
     The nodes are chosen among the intermediate ones, each parent's on its own, so that lengths
     vary. It is not done where a parent has no intermediate node or a child would exceed N_max.
     """
-    size_i, size_j = parents.chromosomes[i].size, parents.chromosomes[j].size
+    size_i, size_j = parents.chromosomes[i].intermediate, parents.chromosomes[j].intermediate
     if size_i == 0 or size_j == 0:
         return False
     cut = 1 + int(rng.random() * size_i)

@@ -3,18 +3,20 @@
 import numpy as np
 from numba import njit
 
-from kbga.encoding import Population, close_columns, forget
+from kbga.encoding import NEEDED, NEEDED_IF_FEASIBLE, Population, close_columns, forget
 from kbga.evaluation import evaluate_segment, is_free_segment, sum_up
 from kbga.problem import Problem
 
 
 @njit(cache=True)
-def _random_node(nodes: np.ndarray, i: int, size: int, rng: np.random.Generator) -> int:
-    """Column of a random intermediate node that is not known to be needed; 0 if there is none."""
+def _random_node(
+    nodes: np.ndarray, i: int, size: int, known: int, rng: np.random.Generator
+) -> int:
+    """Column of a random intermediate node that is not ``known`` to be needed; 0 if none is."""
     chosen = 0
     count = 0
     for k in range(1, size + 1):
-        if not nodes[i, k].needed:
+        if nodes[i, k].needed < known:
             count += 1
             if rng.random() * count < 1.0:
                 chosen = k
@@ -33,27 +35,31 @@ def delete(
 ) -> bool:
     """Delete a random node of chromosome i if that is beneficial; whether it was done.
 
-    An infeasible path must get cheaper; where it turns feasible it does, for the new segment is
-    no longer than the two that it replaces. A feasible path must stay feasible: then it gets
-    shorter.
+    It is where the new segment is feasible: it is no longer than the two that it replaces. In an
+    infeasible path, it also is where the new segment costs less than the two. A feasible path
+    must stay feasible, even where a short cut through an obstacle would cost less.
     """
     nodes, arrays = population.nodes, problem.arrays
-    k = _random_node(nodes, i, population.chromosomes[i].size, rng)
+    feasible = population.chromosomes[i].infeasible == 0
+    known = NEEDED_IF_FEASIBLE if feasible else NEEDED
+    k = _random_node(nodes, i, population.chromosomes[i].intermediate, known, rng)
     if k == 0:
         return False
     scratch[0, 0] = nodes[i, k - 1]
     scratch[0, 1] = nodes[i, k + 1]
-    if population.chromosomes[i].infeasible == 0:
+    if feasible:
         beneficial = is_free_segment(scratch, 0, 0, arrays, counter)
     else:
         evaluate_segment(scratch, 0, 0, arrays, counter)
-        beneficial = scratch[0, 0].length + scratch[0, 0].depth * penalty < (
+        beneficial = scratch[0, 0].depth == 0.0 or scratch[0, 0].length + (
+            scratch[0, 0].depth * penalty
+        ) < (
             nodes[i, k - 1].length
             + nodes[i, k].length
             + (nodes[i, k - 1].depth + nodes[i, k].depth) * penalty
         )
     if not beneficial:
-        nodes[i, k].needed = 1
+        nodes[i, k].needed = known
         return False
     nodes[i, k - 1] = scratch[0, 0]
     close_columns(population, i, k, 1)

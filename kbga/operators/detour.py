@@ -11,7 +11,7 @@ from kbga.encoding import NODE, distance
 
 def make_scratch() -> np.ndarray:
     """Room for one trial and the best so far: (2, 3) of NODE."""
-    return np.zeros((2, 3), NODE)
+    return np.zeros((2, 3), NODE).view(np.recarray)
 
 
 @njit(cache=True)

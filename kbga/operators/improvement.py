@@ -95,7 +95,7 @@ def improve(
     units, others halved, until a step of one unit does not help. Then the node is settled until
     a neighbour changes.
     """
-    size = population.chromosomes[i].size
+    size = population.chromosomes[i].intermediate
     if population.chromosomes[i].infeasible > 0:
         return False
     nodes = population.nodes

@@ -17,16 +17,16 @@ def mutate(
     rng: np.random.Generator,
     counter: np.ndarray,
 ) -> bool:
-    """Replace a random node of chromosome i; whether it had one.
+    """Replace a random node of chromosome i; whether it had one, and the lattice another.
 
     The result need not be better: mutation keeps the population diverse.
     """
     nodes, arrays = population.nodes, problem.arrays
-    size = population.chromosomes[i].size
-    if size == 0:
+    size = population.chromosomes[i].intermediate
+    count = problem.lattice.side * problem.lattice.side
+    if size == 0 or size == count:
         return False
     k = 1 + int(rng.random() * size)
-    count = problem.lattice.side * problem.lattice.side
     gene = int(rng.random() * count)
     while contains(nodes, i, size, gene):
         gene = (gene + 1) % count

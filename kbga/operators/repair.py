@@ -44,7 +44,7 @@ def repair(
     cost least, be it more than before: another repair may follow.
     """
     nodes, arrays = population.nodes, problem.arrays
-    size, infeasible = population.chromosomes[i].size, population.chromosomes[i].infeasible
+    size, infeasible = population.chromosomes[i].intermediate, population.chromosomes[i].infeasible
     if infeasible == 0 or size + 2 >= nodes.shape[1]:
         return False
     k = _random_infeasible_segment(nodes, i, infeasible, rng)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from suite.errors import KbgaBenchError, StoreError
 from suite.report.export import export_rows, made_folder
 from suite.report.figures import plot_scene_results, save
+from suite.report.newest import newest
 from suite.report.summary import feasible
 from suite.report.table import SUFFIX, Format, Table, render
 from suite.report.tables import all_tables
@@ -45,13 +46,14 @@ def write_results(store: Path, directory: Path) -> list[Path]:
     runs = read_runs(store)
     if runs.empty:
         raise StoreError(f"{store}: it holds no runs yet. `kbga-bench run` fills it.")
-    scenes = _scenes(runs)
+    current = newest(runs)
+    scenes = _scenes(current)
     folder = made_folder(directory)
     tables = all_tables(runs)
     files = write_tables(tables, folder, Format.MARKDOWN)
     files += write_tables(tables, folder, Format.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet")
-    files += _write_figures(runs, read_paths(store), scenes, folder)
+    files += _write_figures(current, read_paths(store), scenes, folder)
     manifest = folder / MANIFEST
     _write_text(manifest, json.dumps(_manifest(store, runs, folder, files), indent=2) + "\n")
     return [*files, manifest]

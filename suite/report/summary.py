@@ -40,9 +40,12 @@ def summary(runs: pd.DataFrame) -> pd.DataFrame:
     return frame
 
 
-def summary_table(runs: pd.DataFrame) -> Table:
-    """The summary with its title and note."""
-    return Table("summary", "Results per scene and planner", summary(runs), NOTE)
+def summary_table(runs: pd.DataFrame, left_out: int = 0) -> Table:
+    """The summary with its title and note, which counts the rows that were left out as outdated."""
+    note = NOTE
+    if left_out:
+        note += f" Left out: {left_out} rows of scenes, settings or planners that changed since."
+    return Table("summary", "Results per scene and planner", summary(runs), note)
 
 
 def feasible(runs: pd.DataFrame) -> pd.DataFrame:
@@ -80,6 +83,7 @@ def _measures(group: pd.DataFrame) -> dict[str, Any]:
         **spread(solved["generation_of_best"], "gen to best"),
         **spread(group["generations"], "gen total"),
         **spread(1e3 * solved["time_to_best_s"], "time to best", "ms"),
+        "time total median (ms)": 1e3 * float(group["wall_s"].median()),
         **spread(1e3 * group["wall_s"], "time total", "ms"),
         "otherwise": ", ".join(f"{count} {status}" for status, count in others.items()),
     }

@@ -13,6 +13,9 @@ from tabulate import tabulate
 
 HEADER_WIDTH = 9
 NOTE_WIDTH = 100
+ROUNDING = 1e-9
+"""Equal costs have a standard deviation of this order at most, which says nothing."""
+
 AS_PRINTED = -1
 """For the paper's own figures: whole, or two digits after the point."""
 
@@ -158,6 +161,7 @@ def _as_text(value: Any, digits: int | None) -> str:
     if isinstance(value, Integral):
         return str(value)
     number = float(value)
+    number = number if abs(number) > ROUNDING else 0.0
     if digits == AS_PRINTED:
         return f"{number:.0f}" if number.is_integer() else f"{number:.2f}"
     if digits is not None:

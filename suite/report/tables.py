@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from suite.report.newest import newest
 from suite.report.paper_tables import paper_tables
 from suite.report.summary import summary_table
 from suite.report.table import Table
@@ -19,4 +20,5 @@ def all_tables(runs: pd.DataFrame) -> list[Table]:
     -------
     list of Table
     """
-    return [summary_table(runs), *paper_tables(runs)]
+    kept = newest(runs)
+    return [summary_table(kept, len(runs) - len(kept)), *paper_tables(kept)]

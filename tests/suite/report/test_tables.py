@@ -78,6 +78,16 @@ def test_an_empty_store_has_an_empty_summary(runs_of):
     assert len(all_tables(runs_of())) == 1
 
 
+def test_rows_of_a_scene_that_changed_are_left_out_and_counted(runs_of):
+    before = make_record(make_cell(scene_hash="old", seed=0), started_at="2026-01-01T00:00:00")
+    after = make_record(make_cell(scene_hash="new", seed=1), started_at="2026-01-02T00:00:00")
+    again = make_record(make_cell(scene_hash="new", seed=2), started_at="2026-01-02T00:00:01")
+    other = make_record(make_cell(scene="maze", seed=3), started_at="2026-01-01T00:00:00")
+    table = all_tables(runs_of(before, after, again, other))[0]
+    assert table.frame.set_index("scene")["runs"].to_dict() == {"zigzag": 2, "maze": 1}
+    assert "Left out: 1 rows" in table.note
+
+
 def table_1(runs_of):
     runs = runs_of(
         solved(156.0, seed=0),
