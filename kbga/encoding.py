@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from suite.geometry.tolerances import GRID_DECIMALS
 
-
 _CELLS = float(10**GRID_DECIMALS)
 
 

@@ -61,7 +61,8 @@ def escape_distance(
     each side counts with the group's farthest vertex on it; (c) a side on which the group is
     joined to the border is a dead end. Where both sides are dead ends no shift helps, and both
     together are taken (ours: deeper than either). A segment that runs along the border itself, in
-    the slit below the group, has the dead end under it: only the farther side leads out.
+    the slit below the group, has the dead end under it: only the farther side leads out. The frame
+    lies on both sides of every segment.
 
     The paper takes "the related vertices in the group"; here these are all of them, also those
     that lie beyond the ends of the segment. Were they left out, a short slanted cut through a
@@ -80,7 +81,8 @@ def escape_distance(
     first = int(arrays.groups[group, FIRST_CONTACT])
     last = int(arrays.groups[group, LAST_CONTACT])
     dead_left, dead_right = _reach(ax, ay, ux, uy, arrays.contacts, first, last)
-    if dead_left > ON_LINE and dead_right < -ON_LINE:
+    is_frame = group == arrays.groups.shape[0] - 1
+    if is_frame or (dead_left > ON_LINE and dead_right < -ON_LINE):
         return max(LEAST_DEPTH, left - right)
     if dead_left > ON_LINE:
         return max(LEAST_DEPTH, -right)

@@ -67,7 +67,7 @@ class KBGASettings:
             ("stagnation", 1),
         ):
             value = getattr(self, name)
-            if not (isinstance(value, Integral) and value >= low):
+            if not isinstance(value, Integral) or int(value) < low:
                 raise ValueError(f"{name} is {value}; it must be a whole number, {low} or more")
         for operator in ("crossover", "mutation", "repair", "deletion", "improvement"):
             name = f"{operator}_probability"

@@ -9,9 +9,7 @@ from kbga.problem import Problem
 
 
 @njit(cache=True)
-def _random_node(
-    nodes: np.ndarray, i: int, size: int, known: int, rng: np.random.Generator
-) -> int:
+def _random_node(nodes: np.ndarray, i: int, size: int, known: int, rng: np.random.Generator) -> int:
     """Column of a random intermediate node that is not ``known`` to be needed; 0 if none is."""
     chosen = 0
     count = 0

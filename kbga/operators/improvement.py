@@ -66,6 +66,23 @@ def _move(
 
 
 @njit(cache=True)
+def _is_crowded(nodes: np.ndarray, i: int, size: int, k: int, side: int) -> bool:
+    """Whether a lattice neighbour of node k is in the path already, elsewhere than beside k.
+
+    It may be a better place, and may leave the path later without anything changing beside k.
+    """
+    column, row = nodes[i, k].gene % side, nodes[i, k].gene // side
+    for m in range(1, size + 1):
+        if (
+            abs(m - k) > 1
+            and abs(nodes[i, m].gene % side - column) <= 1
+            and abs(nodes[i, m].gene // side - row) <= 1
+        ):
+            return True
+    return False
+
+
+@njit(cache=True)
 def _random_node(nodes: np.ndarray, i: int, size: int, rng: np.random.Generator) -> int:
     """Column of a random intermediate node that is not known to be settled; 0 if there is none."""
     chosen = 0
@@ -114,5 +131,6 @@ def improve(
     if moved:
         forget(nodes, i, k - 1, k + 1)
         sum_up(population, i, penalty)
-    nodes[i, k].settled = 1
+    if not _is_crowded(nodes, i, size, k, lattice.side):
+        nodes[i, k].settled = 1
     return moved

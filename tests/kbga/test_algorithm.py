@@ -1,0 +1,255 @@
+"""KBGA as a whole: reproducible, honest about what it found, and right by kernel and referee."""
+
+import hashlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numba import config
+
+from kbga.algorithm import KBGA
+from kbga.evolution import next_generation
+from kbga.settings import KBGASettings
+from suite.exact import shortest_path
+from suite.geometry.kernels import first_collision
+from suite.referee import judge
+from suite.scene import Scene
+from suite.scenes.catalogue import load_scene, scene_names
+from tests.kbga.laboratory import ENDS, random_scene, scene_of
+from tests.suite.geometry.lattice import COMPILED, counts, pinches
+
+SMALL = KBGASettings(population_size=12, resolution=20, max_generations=counts(12, 5))
+WALL = scene_of(shapely.box(4, 0, 6, 8))
+CLOSED = scene_of(shapely.box(8, 8, 10, 10).difference(shapely.box(8.5, 8.5, 9.5, 9.5)))
+
+
+def evolve(scene: Scene, settings: KBGASettings = SMALL, seed: int = 0) -> KBGA:
+    ga = KBGA(scene, scene.query(), settings, np.random.default_rng(seed))
+    ga.run()
+    return ga
+
+
+def fingerprint(ga: KBGA) -> str:
+    """Of everything that a run leaves behind, bit for bit."""
+    digest = hashlib.sha256()
+    for path in (*ga.paths(), ga.best_path):
+        digest.update(b"none" if path is None else path.tobytes())
+    digest.update(ga.population.chromosomes.tobytes())
+    return f"{digest.hexdigest()} {ga.checks} {ga.best_cost!r}"
+
+
+def fingerprint_elsewhere(**environment: str) -> str:
+    """The fingerprint of a small run on the zigzag, from a process of its own."""
+    code = (
+        "from tests.kbga.test_algorithm import SMALL, evolve, fingerprint, load_scene\n"
+        "from dataclasses import replace\n"
+        "print(fingerprint(evolve(load_scene('zigzag'), replace(SMALL, max_generations=6), 7)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env={**os.environ, **environment},
+        cwd=Path(__file__).parents[2],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return done.stdout.strip()
+
+
+# Randomness
+
+
+def test_the_same_seed_gives_the_same_population_bit_for_bit():
+    scene = load_scene("unstructured")
+    assert fingerprint(evolve(scene, seed=3)) == fingerprint(evolve(scene, seed=3))
+
+
+def test_another_seed_gives_another_population():
+    first, second = (KBGA(WALL, WALL.query(), SMALL, np.random.default_rng(s)) for s in (1, 2))
+    assert fingerprint(first) != fingerprint(second)
+
+
+def test_another_process_gives_the_same_compiled_and_interpreted():
+    compiled = fingerprint_elsewhere(NUMBA_DISABLE_JIT="0")
+    assert fingerprint_elsewhere(NUMBA_DISABLE_JIT="0", PYTHONHASHSEED="5") == compiled
+    assert fingerprint_elsewhere(NUMBA_DISABLE_JIT="1") == compiled
+
+
+# Ends
+
+
+def test_it_stops_at_the_last_generation():
+    ga = evolve(CLOSED)
+    assert ga.generation == SMALL.max_generations
+
+
+def test_it_stops_when_the_best_path_has_stood_long_enough():
+    ga = evolve(WALL, KBGASettings(population_size=12, resolution=20, stagnation=4))
+    assert ga.generation == ga.generation_of_best + 4
+    assert ga.stagnant
+
+
+def test_stagnation_does_not_count_before_there_is_a_path():
+    ga = evolve(
+        CLOSED, KBGASettings(population_size=4, resolution=10, max_generations=8, stagnation=1)
+    )
+    assert ga.generation == 8
+    assert not ga.stagnant
+
+
+def test_without_a_path_there_is_none_to_return():
+    ga = KBGA(CLOSED, CLOSED.query(), SMALL, np.random.default_rng(0))
+    assert ga.run() is None
+    assert (ga.best_path, ga.best_cost) == (None, np.inf)
+    assert 0 < ga.lowest_cost < np.inf
+
+
+def test_a_callback_can_end_it_and_hears_of_each_generation_once():
+    heard: list[tuple[int, bool]] = []
+
+    def listen(ga: KBGA, improved: bool) -> bool:
+        heard.append((ga.generation, improved))
+        return ga.generation < 3
+
+    ga = KBGA(CLOSED, CLOSED.query(), SMALL, np.random.default_rng(0))
+    ga.run(listen)
+    assert heard == [(0, False), (1, False), (2, False), (3, False)]
+
+
+def test_it_can_be_ended_before_the_first_generation():
+    ga = KBGA(WALL, WALL.query(), SMALL, np.random.default_rng(0))
+    ga.run(lambda _ga, _improved: False)
+    assert ga.generation == 0
+
+
+# Easy and degenerate queries
+
+
+@pytest.mark.parametrize("max_nodes", [2, 3, 48])
+@pytest.mark.parametrize("resolution", [2, 7])
+def test_without_obstacles_it_finds_the_straight_line(max_nodes, resolution):
+    settings = KBGASettings(population_size=6, resolution=resolution, max_nodes=max_nodes)
+    ga = evolve(scene_of(), settings)
+    assert ga.best_cost == pytest.approx(8 * np.sqrt(2))
+    assert ga.best_path is not None
+    assert ga.best_path.tolist() in ([[1, 1], [9, 9]], [[1, 1], [5, 5], [9, 9]])
+
+
+def test_from_the_start_to_the_start_it_stays():
+    ga = evolve(scene_of(shapely.box(4, 0, 6, 8), ends=((1, 1), (1, 1))))
+    assert ga.best_cost == 0.0
+    assert ga.best_path is not None
+    assert ga.best_path.tolist() == [[1, 1], [1, 1]]
+
+
+def test_start_and_goal_on_the_border_do_not_tempt_it_under_the_wall():
+    ga = evolve(scene_of(shapely.box(4, 0, 6, 8), ends=((1, 0), (9, 0))))
+    assert ga.lowest_cost == ga.best_cost
+    assert ga.best_cost == pytest.approx(2 + 2 * np.hypot(3, 8), rel=0.02 if COMPILED else 0.3)
+
+
+def test_it_does_not_bend_at_a_pinch_point_or_slip_through_one():
+    # Two boxes from border to border that meet in the lattice node (5, 5) alone.
+    walls = scene_of(shapely.box(0, 4, 5, 5), shapely.box(5, 5, 10, 6), ends=((5, 1), (5, 9)))
+    assert (
+        evolve(walls, KBGASettings(resolution=10, population_size=10, max_generations=10)).best_path
+        is None
+    )
+
+
+@settings(max_examples=counts(120, 6))
+@given(st.integers(0, 2**32), st.sampled_from([4, 8, 16]))
+def test_the_referee_accepts_every_path_among_touching_obstacles(seed, resolution):
+    scene = random_scene(np.random.default_rng(seed))
+    ga = evolve(scene, KBGASettings(population_size=10, resolution=resolution, max_generations=8))
+    if ga.best_path is None:
+        return
+    verdict = judge(scene, scene.query(), ga.best_path)
+    assert verdict.valid, verdict.reason
+    assert verdict.length == pytest.approx(ga.best_cost)
+    assert first_collision(ga.best_path, scene.arrays) == -1
+    pinched = {(p.x, p.y) for p, _ in pinches(scene.arrangement.solid)}
+    assert not pinched & set(map(tuple, ga.best_path[1:-1].tolist()))
+
+
+def test_among_few_obstacles_it_finds_the_optimum_or_that_there_is_no_path():
+    found = 0
+    for seed in range(counts(120, 2)):
+        scene = random_scene(np.random.default_rng(seed))
+        xmin, ymin, xmax, ymax = scene.bounds
+        # All corners of these scenes lie on quarters of a metre, and so do the nodes.
+        resolution = 4 * int(max(xmax - xmin, ymax - ymin))
+        optimum = shortest_path(scene, scene.query()).length
+        ga = evolve(scene, KBGASettings(resolution=resolution, max_generations=counts(60, 25)))
+        assert ga.best_cost == pytest.approx(optimum, rel=1e-9), f"seed {seed}"
+        found += ga.best_path is not None
+    assert found > 0
+
+
+@pytest.mark.parametrize("name", scene_names() if COMPILED else ["zigzag"])
+def test_the_referee_accepts_its_paths_in_the_catalogue(name):
+    scene = load_scene(name)
+    for seed in range(counts(3, 1)):
+        ga = evolve(scene, KBGASettings() if COMPILED else SMALL, seed)
+        assert ga.best_path is not None
+        assert first_collision(ga.best_path, scene.arrays) == -1
+        verdict = judge(scene, scene.query(), ga.best_path)
+        assert verdict.valid, verdict.reason
+        assert verdict.length == pytest.approx(ga.best_cost)
+
+
+# What it says of itself
+
+
+def test_its_report_describes_the_population():
+    ga = evolve(WALL)
+    report = ga.report()
+    costs = ga.population.chromosomes["cost"]
+    infeasible = ga.population.chromosomes["infeasible"]
+    paths = {path.tobytes() for path in ga.paths()}
+    assert (report.generation, report.checks) == (ga.generation, ga.checks)
+    assert (report.best, report.mean) == (costs.min(), costs.mean())
+    assert report.feasible_share == (infeasible == 0).mean()
+    assert report.diversity == len(paths) / 12
+
+
+def test_the_best_is_remembered_with_its_generation():
+    ga = KBGA(WALL, WALL.query(), SMALL, np.random.default_rng(0))
+    best, found = ga.best_cost, 0
+    while ga.generation < SMALL.max_generations:
+        improved = ga.step()
+        assert improved == (ga.best_cost < best)
+        found = ga.generation if improved else found
+        best = ga.best_cost
+        assert ga.generation_of_best == found
+        assert ga.lowest_cost <= ga.population.chromosomes["cost"].min()
+    assert ga.best_path is not None
+    assert np.hypot(*np.diff(ga.best_path, axis=0).T).sum() == pytest.approx(best)
+
+
+def test_the_path_that_it_returns_is_not_touched_by_later_generations():
+    ga = KBGA(WALL, WALL.query(), SMALL, np.random.default_rng(0))
+    while ga.best_path is None:
+        ga.step()
+    path, before = ga.best_path, ga.best_path.copy()
+    ga.step()
+    assert np.array_equal(path, before)
+
+
+@pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
+def test_whole_numbers_for_probabilities_do_not_compile_it_again():
+    evolve(scene_of(ends=ENDS))
+    compiled = len(next_generation.signatures)
+    evolve(
+        scene_of(),
+        KBGASettings(
+            mutation_probability=0, crossover_probability=1, penalty=20, tournament_size=np.int64(2)
+        ),
+    )
+    assert len(next_generation.signatures) == compiled

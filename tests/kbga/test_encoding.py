@@ -1,0 +1,161 @@
+"""Lattice numbers are places, and edits move nodes with all that is known of them."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kbga.encoding import (
+    NODE,
+    Population,
+    close_columns,
+    contains,
+    copy_chromosome,
+    empty_population,
+    forget,
+    make_lattice,
+    node_x,
+    node_y,
+    open_column,
+    path_of,
+    set_node,
+)
+from tests.kbga.laboratory import laboratory, scene_of
+
+BOUNDS = [
+    (0.0, 0.0, 100.0, 100.0),
+    (0.0, 0.0, 10.0, 1.0),
+    (-3.5, 20.0, 4.1, 20.7),
+    (0.1, 0.1, 0.7, 0.8),
+    (-1e4, -1e4, -9e3, 1e4),
+]
+
+
+@pytest.mark.parametrize("bounds", BOUNDS)
+@pytest.mark.parametrize("resolution", [2, 3, 7, 100])
+def test_a_lattice_number_and_its_place_tell_the_same(bounds, resolution):
+    lattice = make_lattice(bounds, resolution)
+    side = resolution + 1
+    assert lattice.side == side
+    for node in {0, 1, resolution, side, 2 * side - 1, side * side // 2, side * side - 1}:
+        column = (node_x(lattice, node) - bounds[0]) / (bounds[2] - bounds[0]) * resolution
+        row = (node_y(lattice, node) - bounds[1]) / (bounds[3] - bounds[1]) * resolution
+        assert column == pytest.approx(round(column), abs=1e-6)
+        assert round(row) * side + round(column) == node
+
+
+@pytest.mark.parametrize("bounds", BOUNDS)
+@pytest.mark.parametrize("resolution", [2, 3, 7, 100])
+def test_the_lattice_ends_exactly_on_the_border(bounds, resolution):
+    lattice = make_lattice(bounds, resolution)
+    first, last = 0, (resolution + 1) ** 2 - 1
+    corners = [node_x(lattice, first), node_y(lattice, first)]
+    corners += [node_x(lattice, last), node_y(lattice, last)]
+    assert tuple(corners) == bounds
+
+
+def test_nodes_are_numbered_row_by_row_from_the_lower_left():
+    lattice = make_lattice((10.0, 20.0, 12.0, 26.0), 2)
+    places = [(node_x(lattice, n), node_y(lattice, n)) for n in range(9)]
+    assert places[:4] == [(10.0, 20.0), (11.0, 20.0), (12.0, 20.0), (10.0, 23.0)]
+    assert places[8] == (12.0, 26.0)
+
+
+@given(st.integers(0, 100), st.integers(0, 100))
+def test_a_node_on_a_wall_stays_on_the_wall(column, row):
+    lattice = make_lattice((0.0, 0.0, 10.0, 10.0), 100)
+    node = row * 101 + column
+    # 0.1 * 3 is not 0.3: drawn as decimals, the wall would lie beside the node.
+    assert (node_x(lattice, node), node_y(lattice, node)) == (column / 10, row / 10)
+
+
+def test_start_and_goal_keep_their_natural_coordinates():
+    ends = ((0.123456789, 0.7), (9.87654321, 3.3))
+    lab = laboratory(scene_of(ends=ends), resolution=3)
+    for i in range(10):
+        path = path_of(lab.population, i)
+        assert (tuple(path[0]), tuple(path[-1])) == ends
+        assert len(path) == len(lab.genes(i)) + 2
+
+
+def filled(count: int = 2, size: int = 4, columns: int = 8) -> Population:
+    """Chromosomes with different bytes in every record."""
+    rng = np.random.default_rng(0)
+    population = empty_population(count, columns)
+    for name in NODE.names or ():
+        field = population.nodes[name]
+        field[:] = rng.integers(1, 10**6, field.shape)
+    population.chromosomes["intermediate"] = size
+    population.chromosomes["cost"] = rng.random(count)
+    population.chromosomes["infeasible"] = 3
+    return population
+
+
+def rows(population: Population, i: int) -> list:
+    size = population.chromosomes["intermediate"][i]
+    return [node.tobytes() for node in population.nodes[i, : size + 2]]
+
+
+def test_copying_keeps_all_records():
+    source, target = filled(), empty_population(3, 8)
+    copy_chromosome(source, 1, target, 2)
+    assert target.chromosomes[2] == source.chromosomes[1]
+    assert rows(target, 2) == rows(source, 1)
+    assert not target.nodes[:2].view(np.uint8).any()
+
+
+def test_a_copy_is_independent_of_its_source():
+    source, target = filled(), empty_population(2, 8)
+    copy_chromosome(source, 0, target, 0)
+    before = rows(target, 0)
+    source.nodes["x"] = -1.0
+    assert rows(target, 0) == before
+
+
+@pytest.mark.parametrize("column", [1, 3, 5])
+def test_opening_and_closing_a_column_moves_whole_records(column):
+    population = filled()
+    before, other = rows(population, 0), rows(population, 1)
+    open_column(population, 0, column)
+    after = rows(population, 0)
+    assert len(after) == len(before) + 1
+    assert after[:column] + after[column + 1 :] == before
+    close_columns(population, 0, column, 1)
+    assert rows(population, 0) == before
+    assert rows(population, 1) == other
+
+
+def test_closing_columns_removes_just_those():
+    population = filled()
+    before = rows(population, 0)
+    close_columns(population, 0, 2, 3)
+    assert rows(population, 0) == before[:2] + before[5:]
+
+
+def test_contains_looks_at_intermediate_nodes_only():
+    population = filled()
+    genes = population.nodes["gene"][0].tolist()
+    assert [contains(population.nodes, 0, 4, g) for g in genes[:6]] == [False] + [True] * 4 + [
+        False
+    ]
+
+
+def test_a_node_is_put_where_its_number_says_and_forgetting_clears_its_flags():
+    population = filled()
+    lattice = make_lattice((0.0, 0.0, 10.0, 5.0), 10)
+    set_node(population.nodes, 0, 2, 25, lattice)
+    node = population.nodes[0, 2]
+    assert (node["gene"], node["x"], node["y"]) == (25, 3.0, 1.0)
+    forget(population.nodes, 0, 2, 3)
+    assert population.nodes["settled"][0, 1:5].astype(bool).tolist() == [True, False, False, True]
+    assert population.nodes["needed"][0, 1:5].astype(bool).tolist() == [True, False, False, True]
+
+
+def test_nodes_on_the_walls_of_a_decimal_scene_are_free():
+    walls = scene_of(
+        shapely.box(0.3, 0.3, 0.6, 0.7), room=shapely.box(0, 0, 1, 1), ends=((0, 0), (1, 1))
+    )
+    lab = laboratory(walls, resolution=10)
+    near = lab.problem.near.tolist()
+    assert {3 * 11 + 3, 3 * 11 + 6, 7 * 11 + 3, 7 * 11 + 6} <= set(near)  # the four corners

@@ -1,0 +1,229 @@
+"""Eq. (1) by hand, Fig. 3 case by case, and shapely on what is feasible."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely import box
+from shapely.geometry import LineString, Polygon
+
+from kbga.encoding import GOAL, MAX_HITS, START, empty_population
+from kbga.evaluation import LEAST_DEPTH, escape_distance, evaluate_segment, is_free_segment
+from suite.geometry.arrangement import Arrangement, arrange
+from tests.kbga.laboratory import ROOM, laboratory, random_scene, scene_of, with_paths
+from tests.suite.geometry.lattice import (
+    counts,
+    enters,
+    frame_around,
+    lines,
+    random_segments,
+    random_solid,
+)
+
+Ends = tuple[float, float, float, float]
+
+
+def record(arrangement: Arrangement, ends: Ends, genes: tuple[int, int] = (START, GOAL)) -> np.void:
+    """What evaluation writes of one segment."""
+    nodes = empty_population(1, 2).nodes
+    nodes["gene"][0] = genes
+    nodes["x"][0], nodes["y"][0] = ends[::2], ends[1::2]
+    evaluate_segment(nodes, 0, 0, arrangement.arrays, np.zeros(1, np.int64))
+    return nodes[0, 0]
+
+
+def depth(ends: Ends, *obstacles: Polygon) -> float:
+    """Depth of a segment; the same backwards, and with the whole scene turned or mirrored."""
+    found = []
+    for turn in (
+        lambda x, y: (x, y),
+        lambda x, y: (y, x),
+        lambda x, y: (10 - x, y),
+        lambda x, y: (x, 10 - y),
+    ):
+        turned = [shapely.transform(o, lambda xy, t=turn: np.c_[t(*xy.T)]) for o in obstacles]
+        arrangement = arrange(ROOM, turned)
+        a, b = turn(*ends[:2]), turn(*ends[2:])
+        found += [record(arrangement, (*a, *b))["depth"], record(arrangement, (*b, *a))["depth"]]
+    assert found == pytest.approx([found[0]] * len(found), rel=1e-12)
+    return float(found[0])
+
+
+# Fig. 3
+
+
+def test_a_the_shortest_shift_out_of_an_obstacle_counts():
+    assert depth((0, 4, 10, 4), box(4, 2, 6, 5)) == 1.0
+    assert depth((0, 2.5, 10, 2.5), box(4, 2, 6, 5)) == 0.5
+
+
+def test_a_a_slanted_segment_is_shifted_square_to_itself():
+    assert depth((0, 0, 10, 10), box(3, 3, 5, 5)) == pytest.approx(np.sqrt(2))
+
+
+def test_b_a_shorter_shift_that_meets_another_part_entered_does_not_count():
+    # Up 1 frees it from the left part, but only 5 from the right one; down 3 frees it from both.
+    assert depth((0, 4, 10, 4), box(2, 2, 4, 5), box(4, 1, 6, 9)) == 3.0
+
+
+def test_b_a_shorter_shift_into_another_part_of_the_group_does_not_count():
+    assert depth((0, 4, 10, 4), box(2, 2, 4, 5), box(3, 5, 5, 9)) == 2.0
+
+
+def test_c_a_side_joined_to_the_border_is_a_dead_end():
+    assert depth((0, 1, 10, 1), box(4, 0, 6, 5)) == 4.0
+    assert depth((0, 1, 10, 1), box(4, 0.5, 6, 5)) == 0.5  # the same, not joined
+
+
+def test_c_a_group_is_joined_where_any_of_its_parts_is():
+    assert depth((0, 3, 10, 3), box(4, 2, 6, 8), box(5, 0, 5.5, 2)) == 5.0
+
+
+def test_c_joined_on_both_sides_there_is_no_way_out_and_the_whole_width_counts():
+    assert depth((0, 4, 10, 4), box(4, 0, 6, 10)) == 10.0
+
+
+def test_c_under_a_wall_along_the_border_the_way_out_is_over_the_wall():
+    arrangement = arrange(ROOM, [box(4, 0, 6, 8)])
+    assert escape_distance(1.0, 0.0, 9.0, 0.0, arrangement.arrays, 0) == 8.0
+    assert depth((1, 0, 9, 0), box(4, 0, 6, 8)) >= 8.0
+
+
+def test_c_through_a_bite_of_the_workspace_along_its_border_is_no_short_cut():
+    bitten = arrange(ROOM.difference(box(4, 0, 6, 8)), [])
+    assert record(bitten, (1, 0, 9, 0))["depth"] >= 8.0
+    assert record(bitten, (1, 1, 9, 1))["depth"] >= 7.0
+
+
+def test_d_two_groups_add_up():
+    assert depth((0, 4, 10, 4), box(2, 2, 3, 5), box(6, 1, 7, 6)) == 1.0 + 2.0
+
+
+def test_with_both_ends_inside_it_must_get_out_all_the_same():
+    assert depth((4, 3, 6, 3), box(2, 2, 8, 8)) == 1.0
+
+
+def test_a_segment_without_length_takes_the_nearest_side():
+    assert depth((5, 3, 5, 3), box(4, 2, 7, 8)) == 1.0
+    assert depth((5, 1, 5, 1), box(4, 2, 7, 8)) == 0.0
+
+
+def test_touching_costs_nothing():
+    obstacle = box(4, 2, 6, 5)
+    assert depth((0, 5, 10, 5), obstacle) == 0.0  # along an edge
+    assert depth((3, 4, 5, 6), obstacle) == 0.0  # through the corner (4, 5)
+    assert depth((4, 3, 0, 3), obstacle) == 0.0  # from an edge
+
+
+# Closed, though no obstacle is entered
+
+
+PINCH = arrange(ROOM, [box(3, 3, 5, 5), box(5, 5, 7, 7)])
+
+
+def test_slipping_through_a_pinch_point_is_infeasible_but_hits_nothing():
+    found = record(PINCH, (4, 6, 6, 4))
+    assert (found["depth"], found["hit_count"]) == (LEAST_DEPTH, 0)
+
+
+def test_a_lattice_node_on_a_pinch_point_is_closed_a_start_there_is_not():
+    assert record(PINCH, (4, 6, 5, 5), (START, 60))["depth"] == LEAST_DEPTH
+    assert record(PINCH, (5, 5, 4, 6), (60, GOAL))["depth"] == LEAST_DEPTH
+    assert record(PINCH, (5, 5, 4, 6), (START, 60))["depth"] == 0.0
+    assert record(PINCH, (4, 6, 5, 5), (60, GOAL))["depth"] == 0.0
+
+
+# What is recorded
+
+
+def test_more_obstacles_than_there_is_room_to_note_still_all_count():
+    slabs = [box(x, 3, x + 0.5, 5) for x in np.arange(0.25, 9, 0.8)]
+    found = record(arrange(ROOM, slabs), (0.0, 4.5, 10.0, 4.5))
+    assert len(slabs) > MAX_HITS
+    assert found["hit_count"] == MAX_HITS
+    assert len(set(found["hits"].tolist())) == MAX_HITS
+    assert found["depth"] == 0.5 * len(slabs)
+
+
+def test_cost_is_length_plus_penalty_times_depth_summed_over_segments():
+    scene = scene_of(box(4, 2, 6, 5), ends=((0, 4), (10, 4)))
+    lab = with_paths(laboratory(scene, penalty=3.0), [(5, 9), (8, 9)], [])
+    straight, over = lab.cost(1), lab.cost(0)
+    assert straight == 10.0 + 1.0 * 3.0
+    assert over == pytest.approx(5 * np.sqrt(2) + 3 + np.hypot(2, 5))
+
+
+@settings(max_examples=counts(30, 4))
+@given(st.integers(0, 2**32), st.floats(0, 100))
+def test_cost_of_random_paths_adds_up(seed, penalty):
+    lab = laboratory(random_scene(np.random.default_rng(seed)), seed, penalty=penalty)
+    for nodes, chromosome in zip(*lab.population, strict=True):
+        segments = nodes[: chromosome["intermediate"] + 1]
+        xy = np.c_[nodes["x"], nodes["y"]][: len(segments) + 1]
+        length = np.hypot(*np.diff(xy, axis=0).T).sum()
+        wanted = length + penalty * segments["depth"].sum()
+        assert chromosome["cost"] == pytest.approx(wanted, rel=1e-12)
+        assert chromosome["infeasible"] == (segments["depth"] > 0).sum()
+
+
+# Against shapely
+
+
+def test_depth_is_zero_if_and_only_if_shapely_lets_the_segment_pass():
+    for seed in range(counts(60, 6)):
+        rng = np.random.default_rng(seed)
+        room, obstacles = random_solid(rng)
+        arrangement = arrange(room, obstacles)
+        solid = shapely.union_all([frame_around(room), *obstacles])
+        segments = random_segments(rng, room, 100)
+        found = np.array([record(arrangement, tuple(s))["depth"] > 0 for s in segments.tolist()])
+        assert segments[found != enters(solid, segments)].tolist() == [], f"seed {seed}"
+
+
+def test_the_quick_test_agrees_with_evaluation_and_writes_the_same():
+    for seed in range(counts(30, 4)):
+        rng = np.random.default_rng(seed)
+        room, obstacles = random_solid(rng)
+        arrangement = arrange(room, obstacles)
+        for ends in random_segments(rng, room, 50).tolist():
+            genes = tuple(int(g) for g in rng.choice([START, 5], 2))
+            full = record(arrangement, ends, genes)
+            nodes = empty_population(1, 2).nodes
+            nodes["gene"][0] = genes
+            nodes["x"][0], nodes["y"][0] = ends[::2], ends[1::2]
+            free = is_free_segment(nodes, 0, 0, arrangement.arrays, np.zeros(1, np.int64))
+            assert free == (full["depth"] == 0.0)
+            if free:
+                assert nodes[0, 0].tolist()[:6] == full.tolist()[:6]
+
+
+def groups_hit(arrangement: Arrangement, room: Polygon, line: LineString) -> set[int]:
+    """By shapely: groups whose interior is entered, and pairs whose common seam is run along."""
+    polygons = [*arrangement.groups, frame_around(room)]
+    hit = {g for g, p in enumerate(polygons) if shapely.relate_pattern(p, line, "T********")}
+    frame = len(polygons) - 1
+    for g in range(frame):
+        seam = polygons[g].boundary.intersection(polygons[frame].boundary)
+        if line.intersection(seam).length > 0:
+            hit |= {g, frame}
+    return hit
+
+
+def test_noted_hits_are_the_groups_that_shapely_says_are_entered():
+    hits = 0
+    for seed in range(counts(60, 6)):
+        rng = np.random.default_rng(seed)
+        room, obstacles = random_solid(rng)
+        arrangement = arrange(room, obstacles)
+        segments = random_segments(rng, room, 40)
+        segments = segments[(segments[:, :2] != segments[:, 2:]).any(axis=1)]
+        # An end inside the frame's far side is nobody's business: lattice nodes lie in the room.
+        for ends, line in zip(segments.tolist(), lines(segments), strict=True):
+            if not box(*room.bounds).covers(line):
+                continue
+            found = record(arrangement, ends)
+            noted = found["hits"][: found["hit_count"]].tolist()
+            assert noted == sorted(groups_hit(arrangement, room, line)), (seed, ends)
+            hits += len(noted)
+    assert hits > 0

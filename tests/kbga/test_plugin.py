@@ -1,0 +1,123 @@
+"""KBGA behind the plugin interface: budgets kept, improvements told, claims true."""
+
+import numpy as np
+import pytest
+import shapely
+
+from kbga.plugin import KBGAPlanner
+from kbga.settings import KBGASettings
+from suite.planner import Budget, Plan, PlanStatus, Recorder
+from suite.referee import judge
+from suite.scene import Scene
+from tests.kbga.laboratory import scene_of
+from tests.suite.geometry.lattice import counts
+
+SMALL = KBGASettings(population_size=12, resolution=20, max_generations=counts(15, 5))
+WALL = scene_of(shapely.box(4, 0, 6, 8))
+CLOSED = scene_of(shapely.box(8, 8, 10, 10).difference(shapely.box(8.5, 8.5, 9.5, 9.5)))
+
+
+def plan(
+    scene: Scene = WALL,
+    budget: Budget | None = None,
+    recorder: Recorder | None = None,
+    settings: KBGASettings = SMALL,
+) -> Plan:
+    planner = KBGAPlanner(settings)
+    rng = np.random.default_rng(4)
+    recorder = Recorder() if recorder is None else recorder
+    recorder.start_clock()
+    return planner.plan(scene, scene.query(), budget or Budget(), rng, recorder)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def warm() -> None:
+    KBGAPlanner().warm_up()
+
+
+def test_the_referee_accepts_what_it_calls_solved_and_agrees_on_its_length():
+    made = plan()
+    verdict = judge(WALL, WALL.query(), made.path)
+    assert made.status is PlanStatus.SOLVED
+    assert verdict.valid, verdict.reason
+    assert made.claimed_cost == pytest.approx(verdict.length)
+
+
+def test_without_a_path_it_is_exhausted_and_claims_the_penalised_cost():
+    recorder = Recorder()
+    made = plan(CLOSED, recorder=recorder)
+    assert (made.status, made.path) == (PlanStatus.EXHAUSTED, None)
+    assert made.generations == SMALL.max_generations
+    assert recorder.improvements == []
+    assert made.claimed_cost == min(row["best"] for row in recorder.trace)
+    assert recorder.trace[made.generation_of_best or 0]["best"] == made.claimed_cost
+
+
+def test_improvements_fall_and_the_last_is_the_path_returned():
+    recorder = Recorder()
+    made = plan(recorder=recorder)
+    costs = [i.cost for i in recorder.improvements]
+    assert costs == sorted(set(costs), reverse=True)
+    assert made.path is not None
+    assert costs[-1] == pytest.approx(np.hypot(*np.diff(made.path, axis=0).T).sum())
+    last = recorder.improvements[-1]
+    assert (last.cost, last.generation) == (made.claimed_cost, made.generation_of_best)
+    assert sorted(i.checks or 0 for i in recorder.improvements)[-1] <= (made.checks or 0)
+
+
+def test_the_trace_has_a_row_per_generation_the_first_population_included():
+    recorder = Recorder()
+    made = plan(recorder=recorder)
+    assert [row["generation"] for row in recorder.trace] == list(range((made.generations or 0) + 1))
+    names = {"generation", "best", "mean", "feasible_share", "diversity", "checks"}
+    assert all(set(row) == names for row in recorder.trace)
+    assert recorder.trace[-1]["checks"] == made.checks
+
+
+def test_the_first_population_is_kept_only_if_asked_for():
+    asked, not_asked = Recorder(keep_snapshots=True), Recorder()
+    first, second = plan(recorder=asked), plan(recorder=not_asked)
+    assert not_asked.snapshots == {}
+    assert list(asked.snapshots) == ["first population"]
+    assert len(asked.snapshots["first population"]) == 12
+    assert all(path[0].tolist() == [1, 1] for path in asked.snapshots["first population"])
+    assert np.array_equal(first.path, second.path)
+
+
+@pytest.mark.parametrize("generations", [1, 3])
+def test_a_budget_of_generations_is_kept_exactly(generations):
+    assert plan(CLOSED, Budget(generations=generations)).generations == generations
+
+
+def test_a_budget_of_checks_ends_the_run_after_the_generation_that_passed_it():
+    recorder = Recorder()
+    budget = Budget(checks=150)
+    made = plan(CLOSED, budget, recorder)
+    *before, last = [row["checks"] for row in recorder.trace]
+    assert last >= 150
+    assert all(checks < 150 for checks in before)
+    assert made.checks == last
+
+
+def test_a_budget_of_time_that_is_over_at_once_leaves_the_first_population():
+    assert plan(CLOSED, Budget(wall_s=1e-9)).generations == 0
+
+
+def test_a_budget_of_time_ends_a_run_that_would_go_on():
+    endless = KBGASettings(population_size=12, resolution=20, max_generations=10**9)
+    recorder = Recorder()
+    made = plan(CLOSED, Budget(wall_s=0.05), recorder, endless)
+    assert made.generations is not None
+    assert 0 < made.generations < 10**9
+    assert recorder.wall_s() >= 0.05
+
+
+def test_an_ample_budget_changes_nothing():
+    ample = Budget(wall_s=1e6, generations=10**6, checks=10**12)
+    assert np.array_equal(plan(budget=ample).path, plan().path)
+
+
+def test_it_keeps_the_budgets_that_it_says_it_keeps():
+    assert KBGAPlanner.abilities.anytime
+    assert KBGAPlanner.abilities.budgets == {"wall_s", "generations", "checks"}
+    assert not KBGAPlanner.abilities.exact

@@ -1,0 +1,77 @@
+"""Settings refuse what makes no sense, and say which and why."""
+
+from dataclasses import FrozenInstanceError, fields
+
+import numpy as np
+import pytest
+
+from kbga.settings import KBGASettings
+
+WHOLE = {
+    "population_size": 2,
+    "resolution": 2,
+    "max_nodes": 2,
+    "initial_nodes": 1,
+    "tournament_size": 1,
+    "repair_candidates": 1,
+    "improvement_radius": 1,
+    "rounds": 1,
+    "max_generations": 1,
+    "stagnation": 1,
+}
+PROBABILITIES = [f.name for f in fields(KBGASettings) if f.name.endswith("_probability")]
+NAN, INF = float("nan"), float("inf")
+
+
+def test_the_defaults_are_those_of_the_paper():
+    chosen = KBGASettings()
+    assert (chosen.population_size, chosen.resolution) == (50, 100)
+    assert chosen.mutation_probability == 0.2
+    others = [getattr(chosen, p) for p in PROBABILITIES if p != "mutation_probability"]
+    assert others == [0.9] * 4
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_a_number_below_its_least_is_refused_with_name_and_range(name):
+    least = WHOLE[name]
+    assert getattr(KBGASettings(**{name: least}), name) == least
+    for bad in (least - 1, -5):
+        with pytest.raises(ValueError, match=rf"^{name} is {bad}; .* {least} or more$"):
+            KBGASettings(**{name: bad})
+
+
+@pytest.mark.parametrize("name", WHOLE)
+@pytest.mark.parametrize("bad", [10.5, 50.0, NAN, INF, "50"])
+def test_what_counts_must_be_a_whole_number(name, bad):
+    with pytest.raises(ValueError, match=f"^{name} is {bad}; it must be a whole number"):
+        KBGASettings(**{name: bad})
+
+
+def test_a_numpy_integer_is_a_whole_number():
+    assert KBGASettings(population_size=np.int64(7)).population_size == 7
+
+
+@pytest.mark.parametrize("name", PROBABILITIES)
+def test_a_probability_lies_between_0_and_1_both_allowed(name):
+    for good in (0.0, 1.0, 0, 1):
+        assert getattr(KBGASettings(**{name: good}), name) == good
+    for bad in (-0.01, 1.01, NAN, INF):
+        with pytest.raises(ValueError, match=rf"^{name} is {bad}; it must lie in \[0, 1\]$"):
+            KBGASettings(**{name: bad})
+
+
+@pytest.mark.parametrize("bad", [-1.0, INF, NAN])
+def test_a_penalty_is_finite_and_not_negative(bad):
+    with pytest.raises(ValueError, match=f"^penalty is {bad}; it must be 0 or more, and finite$"):
+        KBGASettings(penalty=bad)
+    assert KBGASettings(penalty=0.0).penalty == 0.0
+
+
+def test_a_misspelt_setting_is_a_type_error():
+    with pytest.raises(TypeError, match="populaton_size"):
+        KBGASettings(populaton_size=40)  # type: ignore[call-arg]
+
+
+def test_settings_do_not_change():
+    with pytest.raises(FrozenInstanceError):
+        KBGASettings().rounds = 3  # type: ignore[misc]
