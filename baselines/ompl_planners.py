@@ -136,8 +136,7 @@ class ExactCollision(ob.MotionValidator):  # type: ignore[misc]
         super().__init__(information)
         arrays = scene.arrays
         self._tables = (
-            arrays.groups,
-            arrays.parts,
+            arrays.tree,
             arrays.vertices,
             arrays.pinches,
             arrays.ways,

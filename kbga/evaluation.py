@@ -10,8 +10,10 @@ from numba import njit
 
 from kbga.encoding import MAX_HITS, Population, distance
 from suite.geometry.kernels import (
+    AFTER,
     FIRST_CONTACT,
     FIRST_EDGE,
+    GROUP,
     LAST_CONTACT,
     LAST_EDGE,
     XMAX,
@@ -19,7 +21,7 @@ from suite.geometry.kernels import (
     YMAX,
     YMIN,
     ObstacleArrays,
-    next_group_entered,
+    next_entry,
     pinch_at,
     segment_slips_through,
 )
@@ -128,7 +130,7 @@ def is_free_segment(
     ax, ay = nodes[i, k].x, nodes[i, k].y
     bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
     counter[0] += 1
-    if next_group_entered(ax, ay, bx, by, arrays.groups, arrays.parts, arrays.vertices, 0) >= 0:
+    if next_entry(ax, ay, bx, by, arrays.tree, arrays.vertices, 0) >= 0:
         return False
     if arrays.pinches.shape[0] > 0 and _is_closed_by_pinch(
         nodes, i, k, arrays.pinches, arrays.ways
@@ -147,17 +149,18 @@ def evaluate_segment(
     """Length, depth and hit obstacles of segment k of chromosome i, written into its node."""
     ax, ay = nodes[i, k].x, nodes[i, k].y
     bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
-    groups, parts, vertices = arrays.groups, arrays.parts, arrays.vertices
+    tree, vertices, groups = arrays.tree, arrays.vertices, arrays.groups
     counter[0] += 1
     depth = 0.0
     count = 0
-    group = next_group_entered(ax, ay, bx, by, groups, parts, vertices, 0)
-    while group >= 0:
+    row = next_entry(ax, ay, bx, by, tree, vertices, 0)
+    while row >= 0:
+        group = int(tree[row, GROUP])
         depth += escape_distance(ax, ay, bx, by, arrays, group)
         if count < MAX_HITS:
             nodes[i, k].hits[count] = group
             count += 1
-        group = next_group_entered(ax, ay, bx, by, groups, parts, vertices, group + 1)
+        row = next_entry(ax, ay, bx, by, tree, vertices, int(groups[group, AFTER]))
     if (
         depth == 0.0
         and arrays.pinches.shape[0] > 0

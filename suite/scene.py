@@ -23,7 +23,7 @@ from shapely.validation import explain_validity
 
 from suite.errors import SceneError
 from suite.geometry.arrangement import Arrangement, arrange
-from suite.geometry.kernels import FIRST, ObstacleArrays
+from suite.geometry.kernels import PARTS, ObstacleArrays
 from suite.geometry.tolerances import GRID, GRID_DECIMALS, LARGEST
 
 DEFAULT_QUERY = "main"
@@ -113,7 +113,7 @@ class Scene:
     @property
     def part_count(self) -> int:
         """Number of convex parts of all obstacles (the frame does not count)."""
-        return int(self.arrays.groups[-1, FIRST])
+        return int(self.arrays.groups[:-1, PARTS].sum())
 
     def query(self, name: str | None = None) -> Query:
         """The query of that name, or the first one.

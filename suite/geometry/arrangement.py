@@ -285,23 +285,21 @@ def _tables(
     """Everything in the layout of the kernels; ``parts`` are sorted by group."""
     boundary, contacts = _boundaries_and_contacts(group_of, frame, edges)
     pinches, ways = _pinches(parts, edges, sectors)
-    part_rows = _spans([len(part) for part in parts])
-    group_rows = _spans([group_of.count(group) for group in range(frame + 1)])
+    tree, after = _tree(parts, group_of, frame)
+    groups = [
+        (*_box([p for part in members for p in part]), len(members), end, *edge_rows, *contact_rows)
+        for members, end, edge_rows, contact_rows in zip(
+            _by_group(parts, group_of, frame),
+            after,
+            _spans([len(b) for b in boundary]),
+            _spans([len(c) for c in contacts]),
+            strict=True,
+        )
+    ]
     return ObstacleArrays(
-        groups=_table(
-            [
-                (*_box([p for part in parts[first:last] for p in part]), first, last, *rest)
-                for (first, last), *rest in zip(
-                    group_rows,
-                    *zip(*_spans([len(b) for b in boundary]), strict=True),
-                    *zip(*_spans([len(c) for c in contacts]), strict=True),
-                    strict=True,
-                )
-            ],
-            10,
-        ),
-        parts=_table([(*_box(p), *rows) for p, rows in zip(parts, part_rows, strict=True)], 6),
+        tree=_table(tree, 8),
         vertices=_table([(*e[0], edges.is_seam(e)) for part in parts for e in _edges_of(part)], 3),
+        groups=_table(groups, 10),
         boundary=_table([(*a, *b) for group in boundary for a, b in group], 4),
         contacts=_table([(*a, *b) for group in contacts for a, b in group], 4),
         pinches=_table(
@@ -310,6 +308,73 @@ def _tables(
         ),
         ways=_table([way for around in ways for way in around], 2),
     )
+
+
+def _by_group(parts: Sequence[Part], group_of: Sequence[int], frame: int) -> list[list[Part]]:
+    members: list[list[Part]] = [[] for _ in range(frame + 1)]
+    for part, group in zip(parts, group_of, strict=True):
+        members[group].append(part)
+    return members
+
+
+Box = tuple[float, float, float, float]
+
+
+def _tree(
+    parts: Sequence[Part], group_of: Sequence[int], frame: int
+) -> tuple[list[tuple[float, ...]], list[int]]:
+    """Rows of the tree of boxes, and for each group the row after it.
+
+    Sets of groups are halved until they are single, then sets of their parts: each time along the
+    longer side of their box, at the median of their centres.
+    """
+    rows: list[tuple[float, ...]] = []
+    after = [0] * (frame + 1)
+    leaves: list[list[tuple[Box, int, int]]] = [[] for _ in range(frame + 1)]
+    for part, group, span in zip(parts, group_of, _spans([len(p) for p in parts]), strict=True):
+        leaves[group].append((_box(part), *span))
+
+    def add_parts(members: list[tuple[Box, int, int]], group: int) -> None:
+        if len(members) == 1:
+            box, first, last = members[0]
+            rows.append((*box, len(rows) + 1, group, first, last))
+            return
+        at = len(rows)
+        rows.append(())
+        boxes = [box for box, _, _ in members]
+        for half in _halves(boxes):
+            add_parts([members[i] for i in half], group)
+        rows[at] = (*_hull(boxes), len(rows), group, -1, -1)
+
+    def add_groups(members: list[int]) -> None:
+        if len(members) == 1:
+            add_parts(leaves[members[0]], members[0])
+            after[members[0]] = len(rows)
+            return
+        at = len(rows)
+        rows.append(())
+        boxes = [_hull([box for box, _, _ in leaves[group]]) for group in members]
+        for half in _halves(boxes):
+            add_groups([members[i] for i in half])
+        rows[at] = (*_hull(boxes), len(rows), -1, -1, -1)
+
+    add_groups(list(range(frame + 1)))
+    return rows, after
+
+
+def _hull(boxes: Sequence[Box]) -> Box:
+    """The box around boxes."""
+    xmin, ymin, xmax, ymax = zip(*boxes, strict=True)
+    return min(xmin), min(ymin), max(xmax), max(ymax)
+
+
+def _halves(boxes: Sequence[Box]) -> tuple[list[int], list[int]]:
+    """Indices of boxes, halved at the median of their centres along the longer side of all."""
+    xmin, ymin, xmax, ymax = _hull(boxes)
+    axis = 0 if xmax - xmin >= ymax - ymin else 1
+    order = sorted(range(len(boxes)), key=lambda i: boxes[i][axis] + boxes[i][axis + 2])
+    middle = len(order) // 2
+    return order[:middle], order[middle:]
 
 
 Stretch = tuple[Point, Point]

@@ -21,11 +21,14 @@ class ObstacleArrays(NamedTuple):
     one type and there are few of them: handing an array to a kernel costs more than a box test.
     Numbers of rows are whole, "from" and "to" (exclusive).
 
-    groups : box XMIN, YMIN, XMAX, YMAX of a group (the paper's MMG); rows FIRST to LAST of its
-        parts, FIRST_EDGE to LAST_EDGE in ``boundary``, FIRST_CONTACT to LAST_CONTACT in
-        ``contacts``.
-    parts : box of a convex part (the paper's MMO); rows FIRST to LAST of its vertices.
+    tree : boxes in preorder, of sets of groups, of groups (the paper's MMG), of sets of parts, and
+        of convex parts (its MMO): XMIN, YMIN, XMAX, YMAX; SKIP, the row after the last descendant;
+        GROUP, the group that it belongs to, or -1; FIRST to LAST, rows of the vertices of a part,
+        or -1.
     vertices : x, y, and SEAM: 1 where the edge to the part's next vertex has solid on both sides.
+    groups : XMIN, YMIN, XMAX, YMAX of a group; PARTS, their number; AFTER, the row of ``tree``
+        after the group; FIRST_EDGE to LAST_EDGE, rows of ``boundary``; FIRST_CONTACT to
+        LAST_CONTACT, rows of ``contacts``.
     boundary : x, y, x, y of the edges between a group and anything else.
     contacts : x, y, x, y of the stretches (or points) in which a group touches the frame.
     pinches : x, y of a point where free space is cut by parts that meet in a point only; rows
@@ -33,17 +36,18 @@ class ObstacleArrays(NamedTuple):
     ways : x, y, a direction into each part that meets a pinch point.
     """
 
-    groups: np.ndarray
-    parts: np.ndarray
+    tree: np.ndarray
     vertices: np.ndarray
+    groups: np.ndarray
     boundary: np.ndarray
     contacts: np.ndarray
     pinches: np.ndarray
     ways: np.ndarray
 
 
-XMIN, YMIN, XMAX, YMAX, FIRST, LAST = range(6)
-FIRST_EDGE, LAST_EDGE, FIRST_CONTACT, LAST_CONTACT = range(6, 10)
+XMIN, YMIN, XMAX, YMAX = range(4)
+SKIP, GROUP, FIRST, LAST = range(4, 8)
+PARTS, AFTER, FIRST_EDGE, LAST_EDGE, FIRST_CONTACT, LAST_CONTACT = range(4, 10)
 SEAM = 2
 FIRST_WAY, LAST_WAY = 2, 3
 
@@ -152,65 +156,73 @@ def segment_enters_part(
 
 
 @njit(cache=True, forceinline=True)
-def _boxes_apart(
-    xmin: float, xmax: float, ymin: float, ymax: float, table: np.ndarray, row: int
-) -> bool:
-    """Whether a box and the box in a row of ``groups`` or ``parts`` have no point in common."""
-    return (
-        xmin > table[row, XMAX]
-        or xmax < table[row, XMIN]
-        or ymin > table[row, YMAX]
-        or ymax < table[row, YMIN]
-    )
-
-
-@njit(cache=True, forceinline=True)
-def next_group_entered(
-    ax: float,
-    ay: float,
-    bx: float,
-    by: float,
-    groups: np.ndarray,
-    parts: np.ndarray,
-    vertices: np.ndarray,
-    group: int,
+def next_entry(
+    ax: float, ay: float, bx: float, by: float, tree: np.ndarray, vertices: np.ndarray, row: int
 ) -> int:
-    """First obstacle group, from number ``group`` on, that segment a-b enters; -1 if none.
+    """First row of ``tree``, from ``row`` on, whose part the segment a-b enters; -1 if none.
 
-    Boxes first: those of the groups, then those of their parts (paper II-B).
+    Boxes first (paper II-B): a box that lies beside the segment's own box, or on one side of its
+    line, is skipped with all that is in it.
     """
+    if ax == bx and ay == by:
+        return _next_entry_of_point(ax, ay, tree, vertices, row)
     xmin, xmax = min(ax, bx), max(ax, bx)
     ymin, ymax = min(ay, by), max(ay, by)
-    for g in range(group, groups.shape[0]):
-        if _boxes_apart(xmin, xmax, ymin, ymax, groups, g):
+    nx, ny = by - ay, ax - bx
+    wide, high = 0.5 * abs(nx), 0.5 * abs(ny)
+    # Far more than the rounding of the test below, so that it never skips what is touched.
+    largest = max(-tree[0, XMIN], -tree[0, YMIN], tree[0, XMAX], tree[0, YMAX])
+    slack = 1e-14 * largest * (abs(nx) + abs(ny))
+    while row < tree.shape[0]:
+        x0, y0, x1, y1 = tree[row, XMIN], tree[row, YMIN], tree[row, XMAX], tree[row, YMAX]
+        if (
+            xmin > x1
+            or xmax < x0
+            or ymin > y1
+            or ymax < y0
+            or abs(nx * (0.5 * (x0 + x1) - ax) + ny * (0.5 * (y0 + y1) - ay))
+            > wide * (x1 - x0) + high * (y1 - y0) + slack
+        ):
+            row = int(tree[row, SKIP])
             continue
-        for part in range(int(groups[g, FIRST]), int(groups[g, LAST])):
-            if _boxes_apart(xmin, xmax, ymin, ymax, parts, part):
-                continue
-            first, last = int(parts[part, FIRST]), int(parts[part, LAST]) - 1
-            if segment_enters_part(ax, ay, bx, by, vertices, first, last):
-                return g
-        if ax == bx and ay == by and _is_inner_vertex(ax, ay, groups, parts, vertices, g):
-            return g
+        first = int(tree[row, FIRST])
+        if first >= 0 and segment_enters_part(
+            ax, ay, bx, by, vertices, first, int(tree[row, LAST]) - 1
+        ):
+            return row
+        row += 1
     return -1
 
 
 @njit(cache=True)
-def _is_inner_vertex(
-    x: float, y: float, groups: np.ndarray, parts: np.ndarray, vertices: np.ndarray, group: int
-) -> bool:
-    """Whether point (x, y) is a vertex of the group with solid, parts and seams, all around it."""
-    found = False
-    for part in range(parts.shape[0]):
-        before = int(parts[part, LAST]) - 1
-        for i in range(int(parts[part, FIRST]), int(parts[part, LAST])):
-            if vertices[i, 0] == x and vertices[i, 1] == y:
-                if vertices[before, SEAM] == 0.0 or vertices[i, SEAM] == 0.0:
-                    return False
-                if groups[group, FIRST] <= part < groups[group, LAST]:
-                    found = True
-            before = i
-    return found
+def _next_entry_of_point(
+    x: float, y: float, tree: np.ndarray, vertices: np.ndarray, start: int
+) -> int:
+    """First row of ``tree``, from ``start`` on, whose part holds the point in closed space.
+
+    That is its interior, a seam, or a vertex around which there is nothing but parts and seams.
+    """
+    inner = -1
+    is_open = False
+    row = 0
+    while row < tree.shape[0]:
+        if x > tree[row, XMAX] or x < tree[row, XMIN] or y > tree[row, YMAX] or y < tree[row, YMIN]:
+            row = int(tree[row, SKIP])
+            continue
+        first, last = int(tree[row, FIRST]), int(tree[row, LAST]) - 1
+        if first >= 0:
+            if row >= start and _point_enters_part(x, y, vertices, first, last):
+                return row
+            before = last
+            for i in range(first, last + 1):
+                if vertices[i, 0] == x and vertices[i, 1] == y:
+                    if vertices[before, SEAM] == 0.0 or vertices[i, SEAM] == 0.0:
+                        is_open = True
+                    elif inner < 0 and row >= start:
+                        inner = row
+                before = i
+        row += 1
+    return -1 if is_open else inner
 
 
 @njit(cache=True)
@@ -278,8 +290,7 @@ def segment_enters_tables(
     ay: float,
     bx: float,
     by: float,
-    groups: np.ndarray,
-    parts: np.ndarray,
+    tree: np.ndarray,
     vertices: np.ndarray,
     pinches: np.ndarray,
     ways: np.ndarray,
@@ -288,7 +299,7 @@ def segment_enters_tables(
 
     With only the tables that it reads, for callers that come from Python for every segment.
     """
-    if next_group_entered(ax, ay, bx, by, groups, parts, vertices, 0) >= 0:
+    if next_entry(ax, ay, bx, by, tree, vertices, 0) >= 0:
         return True
     return segment_slips_through(ax, ay, bx, by, pinches, ways)
 
@@ -297,15 +308,7 @@ def segment_enters_tables(
 def segment_enters(ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays) -> bool:
     """Whether segment a-b leaves free space: enters an obstacle, the frame, or a closed passage."""
     return segment_enters_tables(
-        ax,
-        ay,
-        bx,
-        by,
-        arrays.groups,
-        arrays.parts,
-        arrays.vertices,
-        arrays.pinches,
-        arrays.ways,
+        ax, ay, bx, by, arrays.tree, arrays.vertices, arrays.pinches, arrays.ways
     )
 
 

@@ -10,12 +10,15 @@ from shapely.geometry import MultiPolygon, Polygon, box
 
 from suite.geometry.arrangement import Arrangement, arrange
 from suite.geometry.kernels import (
+    AFTER,
     FIRST,
     FIRST_CONTACT,
     FIRST_EDGE,
+    GROUP,
     LAST,
     LAST_CONTACT,
     LAST_EDGE,
+    PARTS,
     SEAM,
 )
 from suite.geometry.predicates import orientation
@@ -26,15 +29,21 @@ seeds = st.integers(0, 2**32)
 on_lattice = settings(max_examples=counts(60, 20))
 
 
+def leaves(arrangement: Arrangement) -> np.ndarray:
+    """Rows of the tree that are parts, in the order of their vertices."""
+    tree = arrangement.arrays.tree
+    rows = tree[tree[:, FIRST] >= 0]
+    return rows[np.argsort(rows[:, FIRST])]
+
+
 def parts(arrangement: Arrangement) -> list[np.ndarray]:
-    tables = arrangement.arrays
-    rows = tables.parts[:, [FIRST, LAST]].astype(int)
-    return [tables.vertices[first:last, :2] for first, last in rows]
+    rows = leaves(arrangement)[:, [FIRST, LAST]].astype(int)
+    return [arrangement.arrays.vertices[first:last, :2] for first, last in rows]
 
 
 def parts_of_group(arrangement: Arrangement, group: int) -> list[np.ndarray]:
-    first, last = arrangement.arrays.groups[group, [FIRST, LAST]].astype(int)
-    return parts(arrangement)[first:last]
+    belongs = leaves(arrangement)[:, GROUP] == group
+    return [part for part, its in zip(parts(arrangement), belongs, strict=True) if its]
 
 
 def edges(arrangement: Arrangement, *, seams: bool) -> set[tuple[float, ...]]:
@@ -137,15 +146,33 @@ def test_obstacles_that_touch_are_one_group(seed):
 def test_boxes_fit_and_the_box_of_a_group_contains_those_of_its_parts(draw, seed):
     arrangement = draw(seed)[2]
     arrays = arrangement.arrays
-    for xy, bounds in zip(parts(arrangement), arrays.parts[:, :4], strict=True):
+    boxes = leaves(arrangement)[:, :4]
+    for xy, bounds in zip(parts(arrangement), boxes, strict=True):
         assert bounds.tolist() == [*xy.min(axis=0), *xy.max(axis=0)]
-    for group, (xmin, ymin, xmax, ymax) in enumerate(arrays.groups[:, :4]):
-        first, last = arrays.groups[group, [FIRST, LAST]].astype(int)
-        boxes = arrays.parts[first:last, :4]
-        assert [xmin, ymin] == boxes[:, :2].min(axis=0).tolist()
-        assert [xmax, ymax] == boxes[:, 2:].max(axis=0).tolist()
+    for group, bounds in enumerate(arrays.groups[:, :4]):
+        its = boxes[leaves(arrangement)[:, GROUP] == group]
+        assert len(its) == arrays.groups[group, PARTS]
+        assert bounds.tolist() == [*its[:, :2].min(axis=0), *its[:, 2:].max(axis=0)]
     for group, polygon in enumerate(arrangement.groups):
         assert polygon.bounds == tuple(arrays.groups[group, :4])
+
+
+@EACH_KIND
+@on_lattice
+@given(seeds)
+def test_the_tree_holds_every_part_once_and_each_box_contains_what_is_below(draw, seed):
+    arrays = draw(seed)[2].arrays
+    tree = arrays.tree
+    assert len(tree) == 2 * (tree[:, FIRST] >= 0).sum() - 1
+    for row, (*box_of, skip, group, first, _) in enumerate(tree):
+        below = tree[row + 1 : int(skip)]
+        assert (first >= 0) == (len(below) == 0)
+        assert all(below[:, :2].min(axis=0) >= box_of[:2]) if len(below) else skip == row + 1
+        assert all(below[:, 2:4].max(axis=0) <= box_of[2:]) if len(below) else True
+        assert set(below[:, GROUP]) <= {group} or group == -1
+    for group, after in enumerate(arrays.groups[:, AFTER].astype(int)):
+        rows = np.flatnonzero(tree[:, GROUP] == group)
+        assert rows.tolist() == list(range(rows[0], after))
 
 
 @on_lattice

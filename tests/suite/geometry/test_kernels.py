@@ -9,7 +9,7 @@ from shapely.affinity import rotate
 from shapely.geometry import Point, Polygon, box
 
 from suite.geometry.arrangement import Arrangement, arrange
-from suite.geometry.kernels import first_collision, next_group_entered, segment_enters
+from suite.geometry.kernels import AFTER, GROUP, first_collision, next_entry, segment_enters
 from tests.suite.geometry.lattice import (
     counts,
     enters,
@@ -130,10 +130,13 @@ def test_groups_entered_are_those_whose_own_polygons_are_entered():
                 if shapely.relate_pattern(group, lines(s[None])[0], NO_PINCH)
             }
             found = set()
-            group = next_group_entered(*s, *arrangement.arrays[:3], 0)
-            while group >= 0:
+            tree, vertices, groups = arrangement.arrays[:3]
+            row = next_entry(*s, tree, vertices, 0)
+            while row >= 0:
+                group = int(tree[row, GROUP])
+                assert group not in found
                 found.add(group)
-                group = next_group_entered(*s, *arrangement.arrays[:3], group + 1)
+                row = next_entry(*s, tree, vertices, int(groups[group, AFTER]))
             # Beyond its own interior, a group closes the slits that it shares with the frame.
             assert wanted <= found
 
