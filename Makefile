@@ -26,7 +26,7 @@ bench: setup
 # The kernels' claims hold compiled and interpreted: the second line runs them without the JIT.
 test: setup
 	$(BIN)/python -m pytest -q -m "not slow" -n 2 --dist worksteal
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -m "not slow" tests/suite/geometry
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -m "not slow" -n 2 tests/suite/geometry tests/kbga
 
 test-slow: setup
 	$(BIN)/python -m pytest -q -m slow

@@ -37,6 +37,42 @@ metres: a slanted border is met only up to rounding."""
 
 @njit(cache=True, forceinline=True)
 def _reach(
+    ax: float,
+    ay: float,
+    ux: float,
+    uy: float,
+    span: float,
+    edges: np.ndarray,
+    first: int,
+    last: int,
+) -> tuple[float, float]:
+    """How far edges reach to the left (> 0) and right (< 0) within the strip of a segment.
+
+    The strip holds what a shift square to the segment passes over: 0 <= t <= span along the
+    direction u from a. Returns the largest and the smallest signed distance; 0 at the least and
+    at the most.
+    """
+    left = 0.0
+    right = 0.0
+    for e in range(first, last):
+        px, py = edges[e, 0] - ax, edges[e, 1] - ay
+        qx, qy = edges[e, 2] - ax, edges[e, 3] - ay
+        t, h = px * ux + py * uy, py * ux - px * uy
+        w, g = qx * ux + qy * uy, qy * ux - qx * uy
+        if (t < 0.0 and w < 0.0) or (t > span and w > span):
+            continue
+        if t < 0.0 or t > span or w < 0.0 or w > span:
+            slope = (g - h) / (w - t)
+            start = h - t * slope  # height of the edge's line at t = 0
+            h = start + min(max(t, 0.0), span) * slope
+            g = start + min(max(w, 0.0), span) * slope
+        left = max(left, h, g)
+        right = min(right, h, g)
+    return left, right
+
+
+@njit(cache=True, forceinline=True)
+def _sides(
     ax: float, ay: float, ux: float, uy: float, edges: np.ndarray, first: int, last: int
 ) -> tuple[float, float]:
     """How far the ends of edges lie to the left (> 0) and right (< 0) of the line from a along u.
@@ -57,18 +93,14 @@ def _reach(
 def escape_distance(
     ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays, group: int
 ) -> float:
-    """Shortest shift, square to segment a-b, that frees its line from an obstacle group, metres.
+    """Shortest shift, square to segment a-b, that frees it from an obstacle group, metres.
 
     Paper Fig. 3: (a) the smaller of the two sides; (b) the whole group must be left behind, so
-    each side counts with the group's farthest vertex on it; (c) a side on which the group is
-    joined to the border is a dead end. Where both sides are dead ends no shift helps, and both
-    together are taken (ours: deeper than either). A segment that runs along the border itself, in
-    the slit below the group, has the dead end under it: only the farther side leads out. The frame
-    lies on both sides of every segment.
-
-    The paper takes "the related vertices in the group"; here these are all of them, also those
-    that lie beyond the ends of the segment. Were they left out, a short slanted cut through a
-    long wall would count as shallow, though no small shift leads the path around the wall.
+    each side counts with the farthest reach of the group within the strip that the segment passes
+    over; (c) a side on which the group is joined to the border is a dead end. Where both sides are
+    dead ends no shift helps, and both together are taken (ours: deeper than either). A segment
+    that runs along the border itself, in the slit below the group, has the dead end under it: only
+    the farther side leads out. The frame lies on both sides of every segment.
     """
     span = distance(ax, ay, bx, by)
     if span == 0.0:
@@ -79,10 +111,10 @@ def escape_distance(
     ux, uy = (bx - ax) / span, (by - ay) / span
     first = int(arrays.groups[group, FIRST_EDGE])
     last = int(arrays.groups[group, LAST_EDGE])
-    left, right = _reach(ax, ay, ux, uy, arrays.boundary, first, last)
+    left, right = _reach(ax, ay, ux, uy, span, arrays.boundary, first, last)
     first = int(arrays.groups[group, FIRST_CONTACT])
     last = int(arrays.groups[group, LAST_CONTACT])
-    dead_left, dead_right = _reach(ax, ay, ux, uy, arrays.contacts, first, last)
+    dead_left, dead_right = _sides(ax, ay, ux, uy, arrays.contacts, first, last)
     is_frame = group == arrays.groups.shape[0] - 1
     if is_frame or (dead_left > ON_LINE and dead_right < -ON_LINE):
         return max(LEAST_DEPTH, left - right)

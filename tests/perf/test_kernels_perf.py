@@ -39,7 +39,7 @@ def test_thousand_collision_checks_in_compiled_code(benchmark, name):
 def test_one_collision_check_from_python(benchmark):
     benchmark.group = "one collision check, from Python"
     arrays = load_scene("zigzag").arrays
-    tables = (arrays.groups, arrays.parts, arrays.vertices, arrays.pinches, arrays.ways)
+    tables = (arrays.tree, arrays.vertices, arrays.pinches, arrays.ways)
     benchmark(segment_enters_tables, 1.0, 2.0, 30.0, 40.0, *tables)
 
 
