@@ -1,36 +1,17 @@
 """KBGA as an object: set up on a scene, evolved generation by generation (paper II-D, Fig. 5)."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kbga.encoding import empty_population, path_of
 from kbga.evolution import Rates, best_feasible, first_population, next_generation
+from kbga.measures import GenerationReport, measure
 from kbga.operators.detour import make_scratch
 from kbga.problem import make_problem
 from kbga.settings import KBGASettings
 from suite.scene import Query, Scene
-
-
-@dataclass(frozen=True, slots=True)
-class GenerationReport:
-    """What there is to say about one generation.
-
-    generation : int, 0 for the first population.
-    best, mean : float, cost of the best chromosome and of all, Eq. (1), metres.
-    feasible_share : float, share of feasible chromosomes.
-    diversity : float, share of chromosomes that differ from all before them in the population.
-    checks : int, collision checks of a segment so far.
-    """
-
-    generation: int
-    best: float
-    mean: float
-    feasible_share: float
-    diversity: float
-    checks: int
 
 
 class KBGA:
@@ -143,19 +124,8 @@ class KBGA:
 
     def report(self) -> GenerationReport:
         """Measures of the current population."""
-        nodes, chromosomes = self.population
-        distinct = {
-            row["gene"][: size + 1].tobytes()
-            for row, size in zip(nodes, chromosomes["intermediate"], strict=True)
-        }
-        return GenerationReport(
-            generation=self.generation,
-            best=float(chromosomes["cost"].min()),
-            mean=float(chromosomes["cost"].mean()),
-            feasible_share=float((chromosomes["infeasible"] == 0).mean()),
-            diversity=len(distinct) / len(nodes),
-            checks=self.checks,
-        )
+        best, mean, feasible_share, diversity = measure(self.population)
+        return GenerationReport(self.generation, best, mean, feasible_share, diversity, self.checks)
 
     def paths(self) -> list[NDArray[np.float64]]:
         """All paths of the current population, each (n, 2), metres."""
