@@ -9,9 +9,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from suite.compiled import kernel
 from suite.geometry.tolerances import GRID_DECIMALS
 
 _CELLS = float(10**GRID_DECIMALS)
@@ -40,7 +40,7 @@ def make_lattice(bounds: tuple[float, float, float, float], resolution: int) -> 
     )
 
 
-@njit(cache=True)
+@kernel
 def _on_grid(x: float) -> float:
     """Coordinate on the grid of the obstacles, so that a node on a wall or the border stays there.
 
@@ -49,19 +49,19 @@ def _on_grid(x: float) -> float:
     return np.rint(x * _CELLS) / _CELLS
 
 
-@njit(cache=True)
+@kernel
 def node_x(lattice: Lattice, node: int) -> float:
     """Coordinate x of a lattice number, metres."""
     return _on_grid(lattice.x0 + lattice.dx * (node % lattice.side))
 
 
-@njit(cache=True)
+@kernel
 def node_y(lattice: Lattice, node: int) -> float:
     """Coordinate y of a lattice number, metres."""
     return _on_grid(lattice.y0 + lattice.dy * (node // lattice.side))
 
 
-@njit(cache=True)
+@kernel
 def distance(ax: float, ay: float, bx: float, by: float) -> float:
     """Distance of two points, metres. Not ``hypot``: its guard against overflow costs 10 ns."""
     dx, dy = bx - ax, by - ay
@@ -144,7 +144,7 @@ def path_of(population: Population, i: int) -> NDArray[np.float64]:
     return np.column_stack([nodes["x"], nodes["y"]])
 
 
-@njit(cache=True)
+@kernel
 def copy_chromosome(source: Population, i: int, target: Population, j: int) -> None:
     """Copy chromosome i of one population to place j of another, with all that is known of it."""
     nodes, copies = source.nodes, target.nodes
@@ -153,7 +153,7 @@ def copy_chromosome(source: Population, i: int, target: Population, j: int) -> N
     target.chromosomes[j] = source.chromosomes[i]
 
 
-@njit(cache=True)
+@kernel
 def set_node(nodes: np.ndarray, i: int, k: int, gene: int, lattice: Lattice) -> None:
     """Put a lattice node into column k; the segments that touch it are to be evaluated after."""
     nodes[i, k].gene = gene
@@ -161,7 +161,7 @@ def set_node(nodes: np.ndarray, i: int, k: int, gene: int, lattice: Lattice) -> 
     nodes[i, k].y = node_y(lattice, gene)
 
 
-@njit(cache=True)
+@kernel
 def forget(nodes: np.ndarray, i: int, first: int, last: int) -> None:
     """Note that columns ``first`` to ``last`` have a new place or neighbour: try them again."""
     for k in range(first, last + 1):
@@ -169,7 +169,7 @@ def forget(nodes: np.ndarray, i: int, first: int, last: int) -> None:
         nodes[i, k].needed = 0
 
 
-@njit(cache=True)
+@kernel
 def open_column(population: Population, i: int, k: int) -> None:
     """Make room for a new node at column k; the rest moves up by one."""
     nodes = population.nodes
@@ -178,7 +178,7 @@ def open_column(population: Population, i: int, k: int) -> None:
     population.chromosomes[i].intermediate += 1
 
 
-@njit(cache=True)
+@kernel
 def close_columns(population: Population, i: int, first: int, count: int) -> None:
     """Remove ``count`` nodes from column ``first`` on; the rest moves down."""
     nodes = population.nodes
@@ -187,7 +187,7 @@ def close_columns(population: Population, i: int, first: int, count: int) -> Non
     population.chromosomes[i].intermediate -= count
 
 
-@njit(cache=True)
+@kernel
 def contains(nodes: np.ndarray, i: int, size: int, gene: int) -> bool:
     """Whether a lattice node is one of the ``size`` intermediate nodes of chromosome i."""
     for k in range(1, size + 1):  # noqa: SIM110 (any() of a generator does not compile)

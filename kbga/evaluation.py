@@ -6,9 +6,10 @@ what was found stays with the chromosome.
 """
 
 import numpy as np
-from numba import njit
 
 from kbga.encoding import MAX_HITS, Population, distance
+from kbga.memory import UNMEASURED, slot_of
+from suite.compiled import inlined_kernel, kernel
 from suite.geometry.kernels import (
     AFTER,
     FIRST_CONTACT,
@@ -35,7 +36,7 @@ ON_LINE = 1e-6
 metres: a slanted border is met only up to rounding."""
 
 
-@njit(cache=True, forceinline=True)
+@inlined_kernel
 def _reach(
     ax: float,
     ay: float,
@@ -71,7 +72,7 @@ def _reach(
     return left, right
 
 
-@njit(cache=True, forceinline=True)
+@inlined_kernel
 def _sides(
     ax: float, ay: float, ux: float, uy: float, edges: np.ndarray, first: int, last: int
 ) -> tuple[float, float]:
@@ -89,7 +90,7 @@ def _sides(
     return left, right
 
 
-@njit(cache=True)
+@kernel
 def escape_distance(
     ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays, group: int
 ) -> float:
@@ -127,7 +128,7 @@ def escape_distance(
     return max(LEAST_DEPTH, min(left, -right))
 
 
-@njit(cache=True)
+@kernel
 def _is_closed_bend(nodes: np.ndarray, i: int, k: int, pinches: np.ndarray) -> bool:
     """Whether column k is a lattice node on a pinch point.
 
@@ -137,7 +138,7 @@ def _is_closed_bend(nodes: np.ndarray, i: int, k: int, pinches: np.ndarray) -> b
     return nodes[i, k].gene >= 0 and pinch_at(nodes[i, k].x, nodes[i, k].y, pinches) >= 0
 
 
-@njit(cache=True)
+@kernel
 def _is_closed_by_pinch(
     nodes: np.ndarray, i: int, k: int, pinches: np.ndarray, ways: np.ndarray
 ) -> bool:
@@ -151,22 +152,34 @@ def _is_closed_by_pinch(
     )
 
 
-@njit(cache=True)
+@kernel
 def is_free_segment(
-    nodes: np.ndarray, i: int, k: int, arrays: ObstacleArrays, counter: np.ndarray
+    nodes: np.ndarray,
+    i: int,
+    k: int,
+    arrays: ObstacleArrays,
+    memory: np.ndarray,
+    counter: np.ndarray,
 ) -> bool:
     """Whether segment k of chromosome i is feasible; if so, that is written into its node.
 
     For those operators that want nothing but feasible segments: it ends at the first obstacle.
     """
+    tail, head = nodes[i, k].gene, nodes[i, k + 1].gene
+    slot = slot_of(tail, head)
     ax, ay = nodes[i, k].x, nodes[i, k].y
     bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
-    counter[0] += 1
-    if next_entry(ax, ay, bx, by, arrays.tree, arrays.vertices, 0) >= 0:
-        return False
-    if arrays.pinches.shape[0] > 0 and _is_closed_by_pinch(
-        nodes, i, k, arrays.pinches, arrays.ways
-    ):
+    if memory[slot].tail != tail or memory[slot].head != head:
+        counter[0] += 1
+        is_free = next_entry(ax, ay, bx, by, arrays.tree, arrays.vertices, 0) < 0 and not (
+            arrays.pinches.shape[0] > 0
+            and _is_closed_by_pinch(nodes, i, k, arrays.pinches, arrays.ways)
+        )
+        memory[slot].tail = tail
+        memory[slot].head = head
+        memory[slot].depth = 0.0 if is_free else UNMEASURED
+        memory[slot].hit_count = 0
+    if memory[slot].depth != 0.0:
         return False
     nodes[i, k].length = distance(ax, ay, bx, by)
     nodes[i, k].depth = 0.0
@@ -174,15 +187,39 @@ def is_free_segment(
     return True
 
 
-@njit(cache=True)
+@kernel
 def evaluate_segment(
-    nodes: np.ndarray, i: int, k: int, arrays: ObstacleArrays, counter: np.ndarray
+    nodes: np.ndarray,
+    i: int,
+    k: int,
+    arrays: ObstacleArrays,
+    memory: np.ndarray,
+    counter: np.ndarray,
 ) -> None:
     """Length, depth and hit obstacles of segment k of chromosome i, written into its node."""
+    tail, head = nodes[i, k].gene, nodes[i, k + 1].gene
+    slot = slot_of(tail, head)
+    if memory[slot].tail != tail or memory[slot].head != head or memory[slot].depth == UNMEASURED:
+        counter[0] += 1
+        _find_out(nodes, i, k, arrays, memory, slot)
+    nodes[i, k].length = distance(
+        nodes[i, k].x, nodes[i, k].y, nodes[i, k + 1].x, nodes[i, k + 1].y
+    )
+    nodes[i, k].depth = memory[slot].depth
+    count = memory[slot].hit_count
+    nodes[i, k].hit_count = count
+    for h in range(count):
+        nodes[i, k].hits[h] = memory[slot].hits[h]
+
+
+@kernel
+def _find_out(
+    nodes: np.ndarray, i: int, k: int, arrays: ObstacleArrays, memory: np.ndarray, slot: int
+) -> None:
+    """Depth and hit obstacles of segment k of chromosome i, remembered in a slot."""
     ax, ay = nodes[i, k].x, nodes[i, k].y
     bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
     tree, vertices, groups = arrays.tree, arrays.vertices, arrays.groups
-    counter[0] += 1
     depth = 0.0
     count = 0
     row = next_entry(ax, ay, bx, by, tree, vertices, 0)
@@ -190,7 +227,7 @@ def evaluate_segment(
         group = int(tree[row, GROUP])
         depth += escape_distance(ax, ay, bx, by, arrays, group)
         if count < MAX_HITS:
-            nodes[i, k].hits[count] = group
+            memory[slot].hits[count] = group
             count += 1
         row = next_entry(ax, ay, bx, by, tree, vertices, int(groups[group, AFTER]))
     if (
@@ -199,12 +236,13 @@ def evaluate_segment(
         and _is_closed_by_pinch(nodes, i, k, arrays.pinches, arrays.ways)
     ):
         depth = LEAST_DEPTH
-    nodes[i, k].length = distance(ax, ay, bx, by)
-    nodes[i, k].depth = depth
-    nodes[i, k].hit_count = count
+    memory[slot].tail = nodes[i, k].gene
+    memory[slot].head = nodes[i, k + 1].gene
+    memory[slot].depth = depth
+    memory[slot].hit_count = count
 
 
-@njit(cache=True)
+@kernel
 def sum_up(population: Population, i: int, penalty: float) -> None:
     """Cost of chromosome i, Eq. (1), and its number of infeasible segments, from its records."""
     nodes = population.nodes

@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from kbga.encoding import GOAL, START, Population, contains, copy_chromosome, forget, set_node
 from kbga.evaluation import evaluate_segment, sum_up
@@ -14,6 +13,7 @@ from kbga.operators.mutation import mutate
 from kbga.operators.repair import repair
 from kbga.problem import Problem
 from kbga.selection import keep_elite, tournament
+from suite.compiled import kernel
 
 
 class Rates(NamedTuple):
@@ -31,7 +31,7 @@ class Rates(NamedTuple):
     rounds: int
 
 
-@njit(cache=True)
+@kernel
 def first_population(
     population: Population,
     start: np.ndarray,
@@ -62,11 +62,11 @@ def first_population(
         population.chromosomes[i].intermediate = size
         forget(nodes, i, 0, size + 1)
         for k in range(size + 1):
-            evaluate_segment(nodes, i, k, problem.arrays, counter)
+            evaluate_segment(nodes, i, k, problem.arrays, problem.memory, counter)
         sum_up(population, i, penalty)
 
 
-@njit(cache=True)
+@kernel
 def next_generation(
     parents: Population,
     children: Population,
@@ -93,7 +93,7 @@ def next_generation(
     keep_elite(parents, children)
 
 
-@njit(cache=True)
+@kernel
 def _transform(
     children: Population,
     i: int,
@@ -122,7 +122,7 @@ def _transform(
             break
 
 
-@njit(cache=True)
+@kernel
 def best_feasible(population: Population) -> int:
     """Index of the cheapest feasible chromosome, or -1."""
     best = -1

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from kbga.encoding import Population
+from suite.compiled import kernel
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,7 @@ class GenerationReport:
     checks: int
 
 
-@njit(cache=True)
+@kernel
 def _are_equal(nodes: np.ndarray, i: int, j: int, intermediate: int) -> bool:
     """Whether chromosomes i and j, of one length, have the same nodes."""
     for k in range(1, intermediate + 1):  # noqa: SIM110 (any() of a generator does not compile)
@@ -36,7 +36,7 @@ def _are_equal(nodes: np.ndarray, i: int, j: int, intermediate: int) -> bool:
     return True
 
 
-@njit(cache=True)
+@kernel
 def measure(population: Population) -> tuple[float, float, float, float]:
     """Best and mean cost, feasible share and diversity; see :class:`GenerationReport`."""
     nodes, chromosomes = population.nodes, population.chromosomes

@@ -6,6 +6,8 @@ import numpy as np
 from numba import njit
 
 from kbga.encoding import Lattice, make_lattice, node_x, node_y
+from kbga.memory import empty_memory
+from suite.compiled import kernel
 from suite.geometry.arrangement import Arrangement
 from suite.geometry.kernels import ObstacleArrays, pinch_at, segment_enters
 
@@ -17,12 +19,14 @@ class Problem(NamedTuple):
     lattice : the lattice of intermediate nodes.
     near : (K,) int64, free lattice nodes next to the corners of each obstacle group.
     near_start : (G + 1,) int64, entries of ``near`` where each group begins.
+    memory : what is known of segments, see :mod:`kbga.memory`; the only field that changes.
     """
 
     arrays: ObstacleArrays
     lattice: Lattice
     near: np.ndarray
     near_start: np.ndarray
+    memory: np.ndarray
 
 
 def make_problem(
@@ -40,10 +44,10 @@ def make_problem(
     near, near_start = _nodes_near_corners(
         arrangement.corners, arrangement.corner_group, arrangement.arrays, lattice
     )
-    return Problem(arrangement.arrays, lattice, near, near_start)
+    return Problem(arrangement.arrays, lattice, near, near_start, empty_memory())
 
 
-@njit(cache=True)
+@kernel
 def is_usable(node: int, arrays: ObstacleArrays, lattice: Lattice) -> bool:
     """Whether a path may bend at a lattice node: it is free, and no pinch point.
 

@@ -1,12 +1,12 @@
 """Tournament selection and elitism (paper II-D)."""
 
 import numpy as np
-from numba import njit
 
 from kbga.encoding import Population, copy_chromosome
+from suite.compiled import kernel
 
 
-@njit(cache=True)
+@kernel
 def tournament(chromosomes: np.ndarray, size: int, rng: np.random.Generator) -> int:
     """Index of the cheapest of ``size`` chromosomes drawn at random."""
     winner = int(rng.random() * chromosomes.size)
@@ -17,7 +17,7 @@ def tournament(chromosomes: np.ndarray, size: int, rng: np.random.Generator) -> 
     return winner
 
 
-@njit(cache=True)
+@kernel
 def keep_elite(parents: Population, children: Population) -> None:
     """Replace the worst child by the best parent, so that the elite is not lost."""
     best = 0

@@ -1,14 +1,14 @@
 """Crossover (paper II-C): exchange the parts after a node of each parent, then cut out loops."""
 
 import numpy as np
-from numba import njit
 
 from kbga.encoding import Population, close_columns, forget
 from kbga.evaluation import evaluate_segment, sum_up
 from kbga.problem import Problem
+from suite.compiled import kernel
 
 
-@njit(cache=True)
+@kernel
 def _splice(
     parents: Population, i: int, cut: int, j: int, resume: int, children: Population, c: int
 ) -> None:
@@ -22,7 +22,7 @@ def _splice(
     children.chromosomes[c].intermediate = cut + end - resume
 
 
-@njit(cache=True)
+@kernel
 def _cut_loop(children: Population, c: int, cut: int) -> bool:
     """Delete the part between two equal nodes, one of each parent; whether there was one.
 
@@ -39,7 +39,7 @@ def _cut_loop(children: Population, c: int, cut: int) -> bool:
     return False
 
 
-@njit(cache=True)
+@kernel
 def _offspring(
     parents: Population,
     i: int,
@@ -55,12 +55,12 @@ def _offspring(
     _splice(parents, i, cut, j, resume, children, c)
     if not _cut_loop(children, c, cut):
         # Every other segment comes from a parent and is known; only the joint is new.
-        evaluate_segment(children.nodes, c, cut, problem.arrays, counter)
+        evaluate_segment(children.nodes, c, cut, problem.arrays, problem.memory, counter)
         forget(children.nodes, c, cut, cut + 1)
     sum_up(children, c, penalty)
 
 
-@njit(cache=True)
+@kernel
 def crossover(
     parents: Population,
     i: int,

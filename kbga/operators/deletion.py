@@ -1,14 +1,14 @@
 """Deletion (paper II-C): leave out a random node if that is beneficial."""
 
 import numpy as np
-from numba import njit
 
 from kbga.encoding import NEEDED, NEEDED_IF_FEASIBLE, Population, close_columns, forget
 from kbga.evaluation import evaluate_segment, is_free_segment, sum_up
 from kbga.problem import Problem
+from suite.compiled import kernel
 
 
-@njit(cache=True)
+@kernel
 def _random_node(nodes: np.ndarray, i: int, size: int, known: int, rng: np.random.Generator) -> int:
     """Column of a random intermediate node that is not ``known`` to be needed; 0 if none is."""
     chosen = 0
@@ -21,7 +21,7 @@ def _random_node(nodes: np.ndarray, i: int, size: int, known: int, rng: np.rando
     return chosen
 
 
-@njit(cache=True)
+@kernel
 def delete(
     population: Population,
     i: int,
@@ -37,7 +37,7 @@ def delete(
     infeasible path, it also is where the new segment costs less than the two. A feasible path
     must stay feasible, even where a short cut through an obstacle would cost less.
     """
-    nodes, arrays = population.nodes, problem.arrays
+    nodes, arrays, memory = population.nodes, problem.arrays, problem.memory
     feasible = population.chromosomes[i].infeasible == 0
     known = NEEDED_IF_FEASIBLE if feasible else NEEDED
     k = _random_node(nodes, i, population.chromosomes[i].intermediate, known, rng)
@@ -46,9 +46,9 @@ def delete(
     scratch[0, 0] = nodes[i, k - 1]
     scratch[0, 1] = nodes[i, k + 1]
     if feasible:
-        beneficial = is_free_segment(scratch, 0, 0, arrays, counter)
+        beneficial = is_free_segment(scratch, 0, 0, arrays, memory, counter)
     else:
-        evaluate_segment(scratch, 0, 0, arrays, counter)
+        evaluate_segment(scratch, 0, 0, arrays, memory, counter)
         beneficial = scratch[0, 0].depth == 0.0 or scratch[0, 0].length + (
             scratch[0, 0].depth * penalty
         ) < (

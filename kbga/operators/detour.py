@@ -4,9 +4,9 @@ Row 0 holds the node before, the node that is tried, and the node after; row 1 t
 """
 
 import numpy as np
-from numba import njit
 
 from kbga.encoding import NODE, distance
+from suite.compiled import kernel
 
 
 def make_scratch() -> np.ndarray:
@@ -14,7 +14,7 @@ def make_scratch() -> np.ndarray:
     return np.zeros((2, 3), NODE).view(np.recarray)
 
 
-@njit(cache=True)
+@kernel
 def detour_length(scratch: np.ndarray) -> float:
     """Length of the way over the node that is tried, metres."""
     x, y = scratch[0, 1].x, scratch[0, 1].y

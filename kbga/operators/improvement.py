@@ -1,12 +1,12 @@
 """Improvement (paper II-C): move a node of a feasible path to a better place nearby."""
 
 import numpy as np
-from numba import njit
 
 from kbga.encoding import Lattice, Population, contains, forget, set_node
 from kbga.evaluation import is_free_segment, sum_up
 from kbga.operators.detour import detour_length
 from kbga.problem import Problem
+from suite.compiled import kernel
 from suite.geometry.kernels import ObstacleArrays
 
 # The eight neighbours of a node, by columns and rows.
@@ -17,7 +17,7 @@ _ROWS = (0, 1, 1, 1, 0, -1, -1, -1)
 _LEAST_GAIN = 1e-9
 
 
-@njit(cache=True)
+@kernel
 def _move(
     nodes: np.ndarray,
     i: int,
@@ -27,6 +27,7 @@ def _move(
     scratch: np.ndarray,
     lattice: Lattice,
     arrays: ObstacleArrays,
+    memory: np.ndarray,
     counter: np.ndarray,
 ) -> bool:
     """Move node k by ``step`` lattice units to the neighbour that shortens the path most.
@@ -51,8 +52,8 @@ def _move(
         if length >= best or contains(nodes, i, size, gene):
             continue
         if not (
-            is_free_segment(scratch, 0, 0, arrays, counter)
-            and is_free_segment(scratch, 0, 1, arrays, counter)
+            is_free_segment(scratch, 0, 0, arrays, memory, counter)
+            and is_free_segment(scratch, 0, 1, arrays, memory, counter)
         ):
             continue
         best = length
@@ -65,7 +66,7 @@ def _move(
     return moved
 
 
-@njit(cache=True)
+@kernel
 def _is_crowded(nodes: np.ndarray, i: int, size: int, k: int, side: int) -> bool:
     """Whether a lattice neighbour of node k is in the path already, elsewhere than beside k.
 
@@ -82,7 +83,7 @@ def _is_crowded(nodes: np.ndarray, i: int, size: int, k: int, side: int) -> bool
     return False
 
 
-@njit(cache=True)
+@kernel
 def _random_node(nodes: np.ndarray, i: int, size: int, rng: np.random.Generator) -> int:
     """Column of a random intermediate node that is not known to be settled; 0 if there is none."""
     chosen = 0
@@ -95,7 +96,7 @@ def _random_node(nodes: np.ndarray, i: int, size: int, rng: np.random.Generator)
     return chosen
 
 
-@njit(cache=True)
+@kernel
 def improve(
     population: Population,
     i: int,
@@ -119,11 +120,11 @@ def improve(
     k = _random_node(nodes, i, size, rng)
     if k == 0:
         return False
-    lattice, arrays = problem.lattice, problem.arrays
+    lattice, arrays, memory = problem.lattice, problem.arrays, problem.memory
     step = 1
     moved = False
     while step > 0:
-        if _move(nodes, i, size, k, step, scratch, lattice, arrays, counter):
+        if _move(nodes, i, size, k, step, scratch, lattice, arrays, memory, counter):
             moved = True
             step = min(2 * step, radius)
         else:

@@ -1,14 +1,14 @@
 """Mutation (paper II-C): replace a random node by one that is not in the path."""
 
 import numpy as np
-from numba import njit
 
 from kbga.encoding import Population, contains, forget, set_node
 from kbga.evaluation import evaluate_segment, sum_up
 from kbga.problem import Problem
+from suite.compiled import kernel
 
 
-@njit(cache=True)
+@kernel
 def mutate(
     population: Population,
     i: int,
@@ -21,7 +21,7 @@ def mutate(
 
     The result need not be better: mutation keeps the population diverse.
     """
-    nodes, arrays = population.nodes, problem.arrays
+    nodes, arrays, memory = population.nodes, problem.arrays, problem.memory
     size = population.chromosomes[i].intermediate
     count = problem.lattice.side * problem.lattice.side
     if size == 0 or size == count:
@@ -32,7 +32,7 @@ def mutate(
         gene = (gene + 1) % count
     set_node(nodes, i, k, gene, problem.lattice)
     forget(nodes, i, k - 1, k + 1)
-    evaluate_segment(nodes, i, k - 1, arrays, counter)
-    evaluate_segment(nodes, i, k, arrays, counter)
+    evaluate_segment(nodes, i, k - 1, arrays, memory, counter)
+    evaluate_segment(nodes, i, k, arrays, memory, counter)
     sum_up(population, i, penalty)
     return True

@@ -3,15 +3,15 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from kbga.encoding import Population, contains, forget, open_column, set_node
 from kbga.evaluation import evaluate_segment, sum_up
 from kbga.operators.detour import detour_length
 from kbga.problem import Problem
+from suite.compiled import kernel
 
 
-@njit(cache=True)
+@kernel
 def _random_infeasible_segment(
     nodes: np.ndarray, i: int, infeasible: int, rng: np.random.Generator
 ) -> int:
@@ -26,7 +26,7 @@ def _random_infeasible_segment(
         k += 1
 
 
-@njit(cache=True)
+@kernel
 def repair(
     population: Population,
     i: int,
@@ -43,7 +43,7 @@ def repair(
     tries lattice nodes next to one of the obstacles hit, and takes the one whose two segments
     cost least, be it more than before: another repair may follow.
     """
-    nodes, arrays = population.nodes, problem.arrays
+    nodes, arrays, memory = population.nodes, problem.arrays, problem.memory
     size, infeasible = population.chromosomes[i].intermediate, population.chromosomes[i].infeasible
     if infeasible == 0 or size + 2 >= nodes.shape[1]:
         return False
@@ -70,11 +70,11 @@ def repair(
         length = detour_length(scratch)
         if length >= best:
             continue
-        evaluate_segment(scratch, 0, 0, arrays, counter)
+        evaluate_segment(scratch, 0, 0, arrays, memory, counter)
         cost = length + scratch[0, 0].depth * penalty
         if cost >= best:
             continue
-        evaluate_segment(scratch, 0, 1, arrays, counter)
+        evaluate_segment(scratch, 0, 1, arrays, memory, counter)
         cost += scratch[0, 1].depth * penalty
         if cost < best:
             best = cost

@@ -8,8 +8,8 @@ and a passage of zero width (a seam, a pinch point, a slit along the border) is 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from suite.compiled import inlined_kernel, kernel
 from suite.geometry.predicates import orientation
 
 
@@ -52,7 +52,7 @@ SEAM = 2
 FIRST_WAY, LAST_WAY = 2, 3
 
 
-@njit(cache=True)
+@kernel
 def _between(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> bool:
     """Whether p, known to lie on the line a-b, lies strictly between a and b."""
     if ax != bx:
@@ -60,7 +60,7 @@ def _between(ax: float, ay: float, bx: float, by: float, px: float, py: float) -
     return min(ay, by) < py < max(ay, by)
 
 
-@njit(cache=True)
+@kernel
 def _shares_seam(
     ax: float, ay: float, bx: float, by: float, px: float, py: float, qx: float, qy: float
 ) -> bool:
@@ -72,7 +72,7 @@ def _shares_seam(
     return max(min(ay, by), min(py, qy)) < min(max(ay, by), max(py, qy))
 
 
-@njit(cache=True)
+@kernel
 def _point_enters_part(x: float, y: float, vertices: np.ndarray, first: int, last: int) -> bool:
     """Whether a point lies in the interior of a convex part, or between the ends of its seams."""
     inside = True
@@ -91,7 +91,7 @@ def _point_enters_part(x: float, y: float, vertices: np.ndarray, first: int, las
     return inside
 
 
-@njit(cache=True)
+@kernel
 def _runs_along_seam(
     ax: float,
     ay: float,
@@ -117,7 +117,7 @@ def _runs_along_seam(
     return False
 
 
-@njit(cache=True, forceinline=True)
+@inlined_kernel
 def segment_enters_part(
     ax: float,
     ay: float,
@@ -155,7 +155,7 @@ def segment_enters_part(
     return True
 
 
-@njit(cache=True, forceinline=True)
+@inlined_kernel
 def next_entry(
     ax: float, ay: float, bx: float, by: float, tree: np.ndarray, vertices: np.ndarray, row: int
 ) -> int:
@@ -194,7 +194,7 @@ def next_entry(
     return -1
 
 
-@njit(cache=True)
+@kernel
 def _next_entry_of_point(
     x: float, y: float, tree: np.ndarray, vertices: np.ndarray, start: int
 ) -> int:
@@ -225,12 +225,12 @@ def _next_entry_of_point(
     return -1 if is_open else inner
 
 
-@njit(cache=True)
+@kernel
 def _cross(ux: float, uy: float, vx: float, vy: float) -> float:
     return ux * vy - uy * vx
 
 
-@njit(cache=True)
+@kernel
 def _way_is_left(ux: float, uy: float, wx: float, wy: float, mx: float, my: float) -> bool:
     """Whether direction m lies strictly inside the counter-clockwise turn from u to w."""
     turn = _cross(ux, uy, wx, wy)
@@ -239,7 +239,7 @@ def _way_is_left(ux: float, uy: float, wx: float, wy: float, mx: float, my: floa
     return _cross(ux, uy, mx, my) > 0.0 and (turn == 0.0 or _cross(mx, my, wx, wy) > 0.0)
 
 
-@njit(cache=True)
+@kernel
 def turn_is_closed(
     ax: float,
     ay: float,
@@ -268,7 +268,7 @@ def turn_is_closed(
     return left and right
 
 
-@njit(cache=True)
+@kernel
 def segment_slips_through(
     ax: float, ay: float, bx: float, by: float, pinches: np.ndarray, ways: np.ndarray
 ) -> bool:
@@ -284,7 +284,7 @@ def segment_slips_through(
     return False
 
 
-@njit(cache=True)
+@kernel
 def segment_enters_tables(
     ax: float,
     ay: float,
@@ -304,7 +304,7 @@ def segment_enters_tables(
     return segment_slips_through(ax, ay, bx, by, pinches, ways)
 
 
-@njit(cache=True)
+@kernel
 def segment_enters(ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays) -> bool:
     """Whether segment a-b leaves free space: enters an obstacle, the frame, or a closed passage."""
     return segment_enters_tables(
@@ -312,7 +312,7 @@ def segment_enters(ax: float, ay: float, bx: float, by: float, arrays: ObstacleA
     )
 
 
-@njit(cache=True)
+@kernel
 def pinch_at(x: float, y: float, pinches: np.ndarray) -> int:
     """Row of the pinch point at (x, y), or -1."""
     for k in range(pinches.shape[0]):
@@ -321,7 +321,7 @@ def pinch_at(x: float, y: float, pinches: np.ndarray) -> int:
     return -1
 
 
-@njit(cache=True)
+@kernel
 def first_collision(path: np.ndarray, arrays: ObstacleArrays) -> int:
     """Index of the first segment of a path (n, 2) that leaves free space, or -1.
 

@@ -21,6 +21,7 @@ from kbga.encoding import (
 )
 from kbga.evaluation import evaluate_segment
 from kbga.evolution import Rates, best_feasible, first_population, next_generation
+from kbga.memory import empty_memory
 from kbga.operators.crossover import crossover
 from kbga.operators.deletion import delete
 from kbga.operators.detour import make_scratch
@@ -225,7 +226,7 @@ def evaluated(lab: Laboratory, row: np.ndarray) -> np.ndarray:
     for name in ("gene", "x", "y"):
         fresh[name][0, : len(row)] = row[name]
     for k in range(len(row) - 1):
-        evaluate_segment(fresh, 0, k, lab.problem.arrays, np.zeros(1, np.int64))
+        evaluate_segment(fresh, 0, k, lab.problem.arrays, empty_memory(), np.zeros(1, np.int64))
     return fresh[0, : len(row)]
 
 
