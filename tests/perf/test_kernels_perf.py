@@ -1,10 +1,14 @@
 """How long the kernels take, compiled: `make perf`. Skipped in the ordinary test run."""
 
+import math
+
 import numpy as np
 import pytest
+import shapely
 from numba import njit
 
 from suite.exact import shortest_path
+from suite.geometry.arrangement import arrange
 from suite.geometry.kernels import segment_enters, segment_enters_tables
 from suite.scenes.catalogue import load_scene, scene_names
 
@@ -34,6 +38,26 @@ def _segments() -> np.ndarray:
 def test_thousand_collision_checks_in_compiled_code(benchmark, name):
     benchmark.group = "1000 collision checks, compiled"
     benchmark(_count_free, _segments(), load_scene(name).arrays)
+
+
+@pytest.mark.parametrize("obstacles", [20, 300, 3000])
+def test_thousand_collision_checks_among_many_obstacles(benchmark, obstacles):
+    """Segments about as long as the obstacles are apart, among irregular hexagons on a grid."""
+    benchmark.group = "1000 collision checks among 20, 300, 3000 obstacles, compiled"
+    rng = np.random.default_rng(0)
+    side = math.ceil(math.sqrt(obstacles))
+    cell = 100.0 / side
+    polygons = []
+    for i in range(obstacles):
+        centre = (np.array([i % side, i // side]) + 0.5) * cell
+        angles = np.sort(rng.uniform(0.0, 2.0 * np.pi, 6))
+        polygons.append(
+            shapely.Polygon(centre + 0.35 * cell * np.c_[np.cos(angles), np.sin(angles)])
+        )
+    arrays = arrange(shapely.box(0, 0, 100, 100), polygons).arrays
+    start = rng.uniform(0.0, 100.0, (SEGMENTS, 2))
+    goal = np.clip(start + rng.uniform(-1.5 * cell, 1.5 * cell, (SEGMENTS, 2)), 0.0, 100.0)
+    benchmark(_count_free, np.hstack([start, goal]), arrays)
 
 
 def test_one_collision_check_from_python(benchmark):
