@@ -6,7 +6,6 @@ STAMP := .venv/.installed
 STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
-PACKAGES := suite kbga baselines
 
 .PHONY: setup bench test test-slow lint perf clean
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
-from shapely.geometry import LinearRing, LineString, MultiPolygon, Polygon
+from shapely.geometry import LinearRing, LineString, Polygon
 from shapely.validation import explain_validity
 
 from suite.errors import SceneError
@@ -363,8 +363,3 @@ def scene_fingerprint(scene: Scene, query: Query) -> str:
     """Hash of a scene's geometry and one query: the key under which results are kept."""
     ends = json.dumps([query.start.tolist(), query.goal.tolist()])
     return hashlib.sha256(f"{scene.hash}\n{ends}".encode()).hexdigest()[:16]
-
-
-def as_polygons(geometry: Polygon | MultiPolygon) -> list[Polygon]:
-    """The polygons of a polygon or multipolygon."""
-    return [geometry] if isinstance(geometry, Polygon) else list(geometry.geoms)

@@ -68,7 +68,7 @@ def arrange(workspace: Polygon, obstacles: Sequence[Polygon]) -> Arrangement:
     order = sorted(range(len(parts)), key=lambda i: group_of[i])
     parts = [parts[i] for i in order]
     group_of = [group_of[i] for i in order]
-    edges = _Edges(parts, group_of, frame, workspace)
+    edges = _Edges(parts, group_of, workspace)
     sectors = _free_sectors(edges)
     corners, corner_group = _corners(sectors, edges)
     return Arrangement(
@@ -198,18 +198,13 @@ def _merged(first: Part, second: Part, a: Point, b: Point) -> Part | None:
 class _Edges:
     """Directed edges of all parts (solid on the left), and what lies on their other side."""
 
-    def __init__(
-        self, parts: Sequence[Part], group_of: Sequence[int], frame: int, workspace: Polygon
-    ) -> None:
+    def __init__(self, parts: Sequence[Part], group_of: Sequence[int], workspace: Polygon) -> None:
         self.group: dict[tuple[Point, Point], int] = {}
         self.parts_at: dict[Point, list[int]] = defaultdict(list)
         for i, part in enumerate(parts):
             for edge in _edges_of(part):
                 self.group[edge] = group_of[i]
                 self.parts_at[edge[0]].append(i)
-        self.parts = parts
-        self.group_of = group_of
-        self.frame = frame
         xmin, ymin, xmax, ymax = workspace.bounds
         margin = 0.5 * FRAME_MARGIN * max(xmax - xmin, ymax - ymin)
         self._limits = (xmin - margin, ymin - margin, xmax + margin, ymax + margin)
