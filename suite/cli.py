@@ -43,6 +43,12 @@ class ListFormat(StrEnum):
     JSON = "json"
 
 
+class Generator(StrEnum):
+    """What scenes can be drawn from a seed."""
+
+    SCATTERED = "scattered"
+
+
 class TextFormat(StrEnum):
     """How a single result is printed."""
 
@@ -94,6 +100,28 @@ def list_command(
         _print_json(rows)
     else:
         _print_rows(rows)
+
+
+@app.command()
+def generate(
+    generator: Annotated[Generator, typer.Argument(help="Kind of scene.")],
+    obstacles: Annotated[int, typer.Option(help="Number of obstacles, counted as convex parts.")],
+    output: Annotated[Path, typer.Option(metavar="FILE", help="Scene file: .geojson or .json.")],
+    seed: Annotated[int, typer.Option(min=0, help="Another seed gives another scene.")] = 0,
+) -> None:
+    """Draw a scene from a seed and write it to a file.
+
+    Without a file, `scattered_300-7` names the same scene wherever a scene is asked for.
+
+    Example: kbga-bench generate scattered --obstacles 300 --seed 7 --output s300.geojson
+    """
+    from suite.scene_file import check_scene_file, write_scene
+    from suite.scenes.scattered import scattered
+
+    check_scene_file(output)
+    draw = {Generator.SCATTERED: scattered}[generator]
+    write_scene(draw(obstacles, seed), output)
+    typer.echo(output)
 
 
 @app.command()

@@ -4,12 +4,16 @@ from typing import Any
 
 from suite.harness.matrix import load_matrix, matrix_file, matrix_names
 from suite.plugins import available_planners
-from suite.scenes.catalogue import load_scene, scene_file, scene_names
+from suite.scenes.catalogue import generated_names, load_scene, scene_file, scene_names
+from suite.scenes.scattered import parse_scattered_name
 
 
 def scenes_listing() -> list[dict[str, Any]]:
-    """Each scene of the catalogue: name, path, obstacles, vertices, parts, optimum (m), figure."""
-    rows = []
+    """Each scene of the catalogue: name, obstacles, vertices, parts, optimum (m), figure, path.
+
+    Of generated scenes it says what their names say: to draw them all takes seconds.
+    """
+    rows: list[dict[str, Any]] = []
     for name in scene_names():
         scene = load_scene(name)
         rows.append(
@@ -21,9 +25,14 @@ def scenes_listing() -> list[dict[str, Any]]:
                 "optimum": scene.stored_optimum(scene.query()),
                 "queries": [query.name for query in scene.queries],
                 "figure": scene.properties.get("figure"),
+                "generated": False,
                 "path": str(scene_file(name)),
             }
         )
+    for name in generated_names():
+        parts, _ = parse_scattered_name(name) or (None, None)
+        known = {"name": name, "parts": parts, "generated": True}
+        rows.append(dict.fromkeys(rows[0]) | known)
     return rows
 
 

@@ -207,6 +207,20 @@ def _paired(
     return {name: (starts[name], goals[name]) for name in starts}
 
 
+def check_scene_file(path: Path) -> None:
+    """Refuse a file that a scene can't be written to, before any is made for it.
+
+    Raises
+    ------
+    SceneError
+        If its suffix is not that of a scene file, or its folder is missing.
+    """
+    if path.suffix.lower() not in SUFFIXES:
+        raise SceneError(f"{path}: scene files are {', '.join(SUFFIXES)}. Name such a file.")
+    if not path.parent.is_dir():
+        raise SceneError(f"{path}: there is no folder {path.parent}. Make it first.")
+
+
 def write_scene(scene: Scene, path: Path) -> None:
     """Write a scene as GeoJSON, one feature a line, in the format of this module.
 

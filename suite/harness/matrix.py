@@ -40,7 +40,7 @@ from suite.plugins import (
 from suite.record import Cell
 from suite.scene import Scene, scene_fingerprint
 from suite.scene_file import SUFFIXES
-from suite.scenes.catalogue import load_scene, scene_names
+from suite.scenes.catalogue import has_scene, load_scene
 
 FOLDER = Path(__file__).parent / "matrices"
 QUICK_SEEDS = 2
@@ -215,7 +215,7 @@ def _scenes(reader: Reader, folder: Path) -> tuple[tuple[Scene, ...], tuple[str,
 
 
 def _source(entry: str, folder: Path) -> str:
-    if entry in scene_names():
+    if has_scene(entry):
         return entry
     path = folder / entry
     is_path = path.exists() or Path(entry).suffix.lower() in SUFFIXES or len(Path(entry).parts) > 1

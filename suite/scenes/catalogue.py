@@ -1,7 +1,8 @@
-"""The catalogue: the scene files that ship with the suite, found by name.
+"""The catalogue: scenes found by name, in files that ship with the suite or drawn from a seed.
 
-They are reconstructions of the environments in Hu and Yang's paper, whose figures are not
-available: each file says so, names its figure, and states the exact optimum of its query.
+The files are reconstructions of the environments in Hu and Yang's paper, whose figures are not
+available: each file says so, names its figure, and states the exact optimum of its query. The
+others are scattered scenes, for studies with more obstacles than the paper's.
 """
 
 import os
@@ -9,8 +10,9 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from suite.errors import SceneError
-from suite.scene import Scene
+from suite.scene import Scene, make_scene
 from suite.scene_file import SUFFIXES, read_scene
+from suite.scenes.scattered import parse_scattered_name, scattered, scattered_name
 
 _FOLDER = Path(__file__).parent
 _PAPER_ORDER = (
@@ -23,10 +25,12 @@ _PAPER_ORDER = (
     "obstacles_30",
     "obstacles_40",
 )
+_SCATTERED = (100, 300, 1000, 3000)
+"""Obstacles of the scattered scenes that are listed; other numbers and seeds need no list."""
 
 
 def scene_names() -> list[str]:
-    """Names of the scenes of the catalogue.
+    """Names of the scenes of the catalogue that ship as files.
 
     Returns
     -------
@@ -39,6 +43,36 @@ def scene_names() -> list[str]:
     ['unstructured', 'maze', 'zigzag']
     """
     return list(_PAPER_ORDER)
+
+
+def generated_names() -> list[str]:
+    """Names of the generated scenes that studies use.
+
+    There are more: ``scattered_N-S`` has N obstacles and the seed S, ``scattered_N`` the seed 0;
+    see :func:`suite.scenes.scattered.scattered`.
+
+    Returns
+    -------
+    list of str
+        By number of obstacles.
+
+    Examples
+    --------
+    >>> generated_names()[0]
+    'scattered_100'
+    """
+    return [scattered_name(obstacles, 0) for obstacles in _SCATTERED]
+
+
+def has_scene(name: str) -> bool:
+    """Whether the catalogue has a scene of that name, in a file or generated.
+
+    Examples
+    --------
+    >>> has_scene("maze"), has_scene("scattered_50-7"), has_scene("maze.geojson")
+    (True, True, False)
+    """
+    return name in _PAPER_ORDER or parse_scattered_name(name) is not None
 
 
 def scene_file(name: str) -> Path:
@@ -56,8 +90,12 @@ def scene_file(name: str) -> Path:
     Raises
     ------
     SceneError
-        If the catalogue has no scene of that name.
+        If the catalogue has no file of that name.
     """
+    if parse_scattered_name(name) is not None:
+        raise SceneError(
+            f"{name}: is generated and has no file. Write one with `kbga-bench generate`."
+        )
     if name not in _PAPER_ORDER:
         raise SceneError(_unknown(name))
     return _FOLDER / f"{name}.geojson"
@@ -69,8 +107,8 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
     Parameters
     ----------
     name_or_path : str or Path
-        One of :func:`scene_names`, or a scene file. A string with a path separator or with the
-        suffix of a scene file (``.geojson``, ``.json``) is a path.
+        One of :func:`scene_names` or :func:`generated_names`, or a scene file. A string with a
+        path separator or with the suffix of a scene file (``.geojson``, ``.json``) is a path.
     inflate : float
         Radius of the robot, metres; see :func:`suite.scene.make_scene`.
 
@@ -81,15 +119,19 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
     Raises
     ------
     SceneError
-        If the catalogue has no scene of that name, or the file can't be used.
+        If the catalogue has no scene of that name, or the scene can't be used.
 
     Examples
     --------
     >>> load_scene("maze").properties["figure"]
     '7'
     """
-    path = Path(name_or_path) if _is_path(name_or_path) else scene_file(str(name_or_path))
-    return read_scene(path, inflate=inflate)
+    if _is_path(name_or_path):
+        return read_scene(Path(name_or_path), inflate=inflate)
+    numbers = parse_scattered_name(str(name_or_path))
+    if numbers is not None:
+        return _inflated(scattered(*numbers), inflate)
+    return read_scene(scene_file(str(name_or_path)), inflate=inflate)
 
 
 def _is_path(name_or_path: str | Path) -> bool:
@@ -100,7 +142,23 @@ def _is_path(name_or_path: str | Path) -> bool:
     return has_separator or Path(name_or_path).suffix.lower() in SUFFIXES
 
 
+def _inflated(scene: Scene, inflate: float) -> Scene:
+    if inflate == 0.0:
+        return scene
+    return make_scene(
+        scene.name,
+        scene.workspace,
+        scene.obstacles,
+        {query.name: (query.start, query.goal) for query in scene.queries},
+        properties=scene.properties,
+        inflate=inflate,
+    )
+
+
 def _unknown(name: str) -> str:
-    message = f"no scene '{name}'. Catalogue: {', '.join(_PAPER_ORDER)}."
-    nearest = get_close_matches(name, _PAPER_ORDER, n=1)
+    message = (
+        f"no scene '{name}'. Catalogue: {', '.join(_PAPER_ORDER)}. "
+        f"Generated: {', '.join(generated_names())}, or scattered_N-S for N obstacles and seed S."
+    )
+    nearest = get_close_matches(name, [*_PAPER_ORDER, *generated_names()], n=1)
     return message + (f" Did you mean '{nearest[0]}'?" if nearest else "")

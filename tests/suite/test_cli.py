@@ -90,6 +90,9 @@ def test_lists_are_json_for_programs(kbga_bench):
     zigzag = next(scene for scene in scenes if scene["name"] == "zigzag")
     assert zigzag["obstacles"] == 5
     assert {"path", "vertices", "parts", "optimum"} <= set(zigzag)
+    scattered = next(scene for scene in scenes if scene["name"] == "scattered_300")
+    assert (scattered["generated"], scattered["parts"], scattered["path"]) == (True, 300, None)
+    assert set(scattered) == set(zigzag)
     matrices = json.loads(kbga_bench("list", "matrices", "--format", "json").out)
     paper = next(matrix for matrix in matrices if matrix["name"] == "paper-static")
     assert paper["runs"] == 8 * 6 * 20
@@ -101,6 +104,44 @@ def test_a_plugin_that_cannot_be_imported_is_listed_with_the_reason(kbga_bench, 
     assert not broken["available"]
     assert "no_such_module" in broken["reason"]
     assert "wanderer" in kbga_bench("list", "planners").out
+
+
+def test_generate_keeps_a_scene_as_a_file_that_is_the_same_scene(kbga_bench, tmp_path):
+    file = tmp_path / "kept.geojson"
+    done = kbga_bench("generate", "scattered", "--obstacles", 20, "--seed", 7, "--output", file)
+    assert done.out.strip() == str(file)
+    by_file, by_name = (
+        json.loads(kbga_bench("exact", scene, "--format", "json").out)
+        for scene in (file, "scattered_20-7")
+    )
+    assert by_file == by_name
+    assert by_file["scene"] == "scattered_20-7"
+
+
+def test_generate_says_what_it_can_not_write(error_of, tmp_path):
+    generate = ("generate", "scattered", "--output")
+    file = tmp_path / "s.geojson"
+    assert "0 obstacles. Give 1 to 10000." in error_of(*generate, file, "--obstacles", 0)
+    assert "10001 obstacles" in error_of(*generate, file, "--obstacles", 10001)
+    assert "scene files are .geojson, .json" in error_of(
+        *generate, tmp_path / "s.txt", "--obstacles", 5
+    )
+    assert "there is no folder" in error_of(*generate, tmp_path / "no" / "s.json", "--obstacles", 5)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_generated_scene_runs_in_a_matrix_and_has_results(kbga_bench, tmp_path):
+    matrix, store = tmp_path / "m.toml", tmp_path / "s.db"
+    matrix.write_text(
+        'scenes = ["scattered_20", "scattered_20-1"]\nseeds = 1\n'
+        '[[planner]]\nplanner = "visibility-graph"\n'
+    )
+    kbga_bench("run", matrix, "--store", store, "--jobs", 2)
+    runs = read_runs(store).set_index("scene")
+    assert runs["status"].to_dict() == {"scattered_20": "solved", "scattered_20-1": "solved"}
+    assert (runs["gap"].abs() < 1e-9).all()
+    kbga_bench("results", store, tmp_path / "r")
+    assert (tmp_path / "r" / "scattered_20-1.png").exists()
 
 
 def test_exact_says_the_optimum_or_that_there_is_none(kbga_bench, wall_file, closed_file):

@@ -12,7 +12,13 @@ from numba import njit
 from suite.errors import SceneError
 from suite.exact import shortest_path
 from suite.geometry.kernels import first_collision, segment_enters
-from suite.scenes.catalogue import load_scene, scene_file, scene_names
+from suite.scenes.catalogue import (
+    generated_names,
+    has_scene,
+    load_scene,
+    scene_file,
+    scene_names,
+)
 from suite.scenes.homotopy import route_optima
 
 FIGURES = {
@@ -183,12 +189,44 @@ def test_an_unknown_name_is_answered_with_the_catalogue_and_the_nearest_name():
         load_scene("mase")
     assert str(error.value) == (
         "no scene 'mase'. Catalogue: unstructured, maze, zigzag, double_u, clustered, "
-        "obstacles_20, obstacles_30, obstacles_40. Did you mean 'maze'?"
+        "obstacles_20, obstacles_30, obstacles_40. Generated: scattered_100, scattered_300, "
+        "scattered_1000, scattered_3000, or scattered_N-S for N obstacles and seed S. "
+        "Did you mean 'maze'?"
     )
 
 
+def test_a_generated_scene_is_found_by_its_name():
+    assert all(has_scene(name) for name in generated_names())
+    assert not set(generated_names()) & set(scene_names())
+    scene = load_scene("scattered_30-7")
+    assert (scene.name, scene.part_count) == ("scattered_30-7", 30)
+    assert load_scene("scattered_30").name == load_scene("scattered_30-0").name == "scattered_30"
+
+
+def test_a_generated_scene_grows_by_the_robots_radius():
+    point, disc = load_scene("scattered_30"), load_scene("scattered_30", inflate=0.5)
+    assert disc.properties == point.properties
+    assert disc.arrangement.solid.area > point.arrangement.solid.area
+
+
+def test_a_generated_scene_has_no_file_and_says_how_to_get_one():
+    with pytest.raises(SceneError, match=r"scattered_100: is generated .* `kbga-bench generate`"):
+        scene_file("scattered_100")
+
+
+def test_a_misspelt_generated_name_is_answered_with_the_nearest_one():
+    with pytest.raises(SceneError, match=r"Did you mean 'scattered_300'\?$"):
+        load_scene("scatered_300")
+
+
+@pytest.mark.parametrize("name", ["scattered_0", "scattered_99999-3"])
+def test_a_generated_name_out_of_range_says_the_range(name):
+    with pytest.raises(SceneError, match=r"Give 1 to 10000\.$"):
+        load_scene(name)
+
+
 def test_a_name_that_resembles_nothing_gets_no_suggestion():
-    with pytest.raises(SceneError, match=r"obstacles_40\.$"):
+    with pytest.raises(SceneError, match=r"seed S\.$"):
         scene_file("xyzzy")
 
 
