@@ -72,6 +72,14 @@ class ExportFormat(StrEnum):
     CSV = "csv"
 
 
+class Rows(StrEnum):
+    """Rows that a results folder can do without; its tables are of the runs."""
+
+    EVENTS = "events"
+    TRACES = "traces"
+    PATHS = "paths"
+
+
 SceneArgument = Annotated[
     str, typer.Argument(metavar="SCENE", help="Name in the catalogue, or path of a scene file.")
 ]
@@ -259,9 +267,9 @@ def tables(
     from suite.report.results import write_tables
     from suite.report.table import Format, render
     from suite.report.tables import all_tables
-    from suite.store import read_runs
+    from suite.store import read_first_measures, read_runs
 
-    found = all_tables(read_runs(store))
+    found = all_tables(read_runs(store), read_first_measures(store))
     if output is not None:
         for path in write_tables(found, output, Format(style)):
             typer.echo(path)
@@ -289,14 +297,18 @@ def export(
 def results(
     store: StoreArgument,
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where to; made if missing.")],
+    leave_out: Annotated[
+        list[Rows] | None,
+        typer.Option(help="Rows that are not written, where they are too many; repeatable."),
+    ] = None,
 ) -> None:
-    """Make a results folder: tables, rows, a figure for each scene, and the manifest.
+    """Make a results folder: tables, rows, figures of scenes and studies, and the manifest.
 
-    Example: kbga-bench results out/paper.db results/paper-static
+    Example: kbga-bench results out/paper.db results/paper-static --leave-out traces
     """
     from suite.report.results import write_results
 
-    for path in write_results(store, directory):
+    for path in write_results(store, directory, leave_out={kind.value for kind in leave_out or []}):
         typer.echo(path)
 
 

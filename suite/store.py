@@ -218,6 +218,24 @@ def read_traces(path: Path) -> pd.DataFrame:
     return frame[["key", *(c for c in frame.columns if c != "key")]]
 
 
+def read_first_measures(path: Path) -> pd.DataFrame:
+    """What the runs that described their generations gave of the first one, by key.
+
+    Returns
+    -------
+    DataFrame
+        Indexed by key; a column for each measure.
+    """
+    with closing(_open_for_reading(path)) as connection, _explained(path):
+        # SQLite takes the first of each measure out of the text: traces are long.
+        rows = connection.execute(
+            "SELECT traces.key, measure.key, json_extract(measure.value, '$[0]') "
+            "FROM traces, json_each(traces.trace) AS measure"
+        ).fetchall()
+    frame = pd.DataFrame(rows, columns=["key", "measure", "first"])
+    return frame.pivot(index="key", columns="measure", values="first")  # noqa: PD010
+
+
 def read_paths(path: Path) -> dict[str, NDArray[np.float64]]:
     """Paths as the planners returned them: key to (n, 2) float64, metres."""
     with closing(_open_for_reading(path)) as connection, _explained(path):

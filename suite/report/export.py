@@ -1,5 +1,6 @@
 """The rows of a store as files that any data tool reads."""
 
+from collections.abc import Callable, Collection
 from pathlib import Path
 
 import pandas as pd
@@ -8,7 +9,9 @@ from suite.errors import StoreError
 from suite.store import read_events, read_paths, read_runs, read_traces
 
 
-def export_rows(store: Path, directory: Path, kind: str) -> list[Path]:
+def export_rows(
+    store: Path, directory: Path, kind: str, *, leave_out: Collection[str] = ()
+) -> list[Path]:
     """Write runs, events, traces and paths, a file each.
 
     Parameters
@@ -18,6 +21,8 @@ def export_rows(store: Path, directory: Path, kind: str) -> list[Path]:
         Made if it is missing.
     kind : str
         ``parquet`` or ``csv``.
+    leave_out : collection of str
+        Kinds of rows that are not written: ``events``, ``traces``, ``paths``.
 
     Returns
     -------
@@ -29,15 +34,18 @@ def export_rows(store: Path, directory: Path, kind: str) -> list[Path]:
     StoreError
         If the store can't be read, or the files can't be written.
     """
-    frames = {
-        "runs": read_runs(store),
-        "events": read_events(store),
-        "traces": read_traces(store),
-        "paths": paths_frame(store),
+    readers: dict[str, Callable[[Path], pd.DataFrame]] = {
+        "runs": read_runs,
+        "events": read_events,
+        "traces": read_traces,
+        "paths": paths_frame,
     }
     folder = made_folder(directory)
     files = []
-    for name, frame in frames.items():
+    for name, read in readers.items():
+        if name in leave_out:
+            continue
+        frame = read(store)
         file = folder / f"{name}.{kind}"
         try:
             if kind == "parquet":

@@ -4,11 +4,13 @@ Colours are Okabe and Ito's, told apart by colour-blind readers; line style and 
 lines apart in grey.
 """
 
+import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+import PIL.Image
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
@@ -47,6 +49,8 @@ ONE_COLUMN_FROM = 34
 """Characters of a legend's line of which two no longer stand side by side."""
 
 RASTER_DPI = 150
+RASTER_COLOURS = 256
+"""Enough for lines, shades and their soft edges, in a third of the bytes of all colours."""
 
 
 def plot_run(
@@ -156,13 +160,24 @@ def save(figure: Figure, file: Path) -> None:
         If the file can't be written.
     """
     dated = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
+    suffix = file.suffix.lower()
     try:
-        with plt.rc_context({"svg.hashsalt": "kbga-bench"}):
-            figure.savefig(file, dpi=RASTER_DPI, metadata=dated.get(file.suffix.lower()))
+        if suffix == ".png":
+            _save_png(figure, file)
+        else:
+            with plt.rc_context({"svg.hashsalt": "kbga-bench"}):
+                figure.savefig(file, metadata=dated.get(suffix))
     except OSError as error:
         raise KbgaBenchError(f"{file}: can't be written ({error.strerror}).") from error
     finally:
         plt.close(figure)
+
+
+def _save_png(figure: Figure, file: Path) -> None:
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format="png", dpi=RASTER_DPI)
+    with PIL.Image.open(drawn) as image:
+        image.convert("RGB").quantize(RASTER_COLOURS).save(file, optimize=True)
 
 
 def _scene_figure(scene: Scene) -> tuple[Figure, Axes]:

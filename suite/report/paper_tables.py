@@ -5,13 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from suite.paper.reported import (
-    KBGA,
-    PLAIN_GA,
-    WITHOUT_CROSSOVER_AND_MUTATION,
-    find,
-    reported,
-)
+from suite.paper.reported import KBGA, PLAIN_GA, find, reported
 from suite.report.summary import feasible
 from suite.report.table import Table
 
@@ -154,50 +148,6 @@ def _static_rows(scene: str, quantity: str, ours: pd.DataFrame) -> list[dict[str
     ]
 
 
-def ablation(runs: pd.DataFrame) -> pd.DataFrame:
-    """Section IV: KBGA whole, with only crossover and mutation, and without these two.
-
-    Parameters
-    ----------
-    runs : DataFrame
-        As :func:`suite.store.read_runs` gives it.
-
-    Returns
-    -------
-    DataFrame
-        A row for each scene and algorithm that was run; the paper's figures where it has any.
-    """
-    rows = []
-    for scene in _in_paper_order(runs):
-        for variant in (KBGA, PLAIN_GA, WITHOUT_CROSSOVER_AND_MUTATION):
-            ours = _of(runs, scene, variant)
-            if len(ours):
-                rows.append(_ablation_row(scene, variant, ours))
-    columns = [
-        "scene", "planner", "paper cost mean", "paper cost SD", "ours cost mean", "ours cost SD",
-        "paper gen mean", "ours gen mean", "ours gen SD", "paper feasible", "ours feasible",
-    ]  # fmt: skip
-    return pd.DataFrame(rows, columns=columns)
-
-
-def _ablation_row(scene: str, variant: str, ours: pd.DataFrame) -> dict[str, Any]:
-    cost, generations = _values(ours, "cost"), _values(ours, "generations")
-    never = _reported(variant, scene, "success", "mean") == 0.0
-    return {
-        "scene": scene,
-        "planner": variant,
-        "paper cost mean": _reported(variant, scene, "cost", "mean"),
-        "paper cost SD": _joined(variant, scene, "cost", "sd"),
-        "ours cost mean": _statistic(cost, "mean"),
-        "ours cost SD": _statistic(cost, "sd"),
-        "paper gen mean": _reported(variant, scene, "generations", "mean"),
-        "ours gen mean": _statistic(generations, "mean"),
-        "ours gen SD": _statistic(generations, "sd"),
-        "paper feasible": "never" if never else "",
-        "ours feasible": _share(ours),
-    }
-
-
 def paper_tables(runs: pd.DataFrame) -> list[Table]:
     """The paper's comparisons that these runs can answer, with titles and notes."""
     tables = []
@@ -219,14 +169,6 @@ def paper_tables(runs: pd.DataFrame) -> list[Table]:
             f"both stand here. {SCENE_NOTE} {TIME_NOTE}"
         )
         tables.append(Table("paper-static", title, static, note))
-    ablated = ablation(runs)
-    if not ablated.empty:
-        title = "Paper's section IV: what the operators contribute"
-        note = (
-            "plain-ga: only crossover and mutation, mutation 0.5. Two SDs of the paper: it states "
-            f"both. ours gen: generations needed. {COST_NOTE}"
-        )
-        tables.append(Table("paper-ablation", title, ablated, note))
     return tables
 
 
@@ -259,11 +201,6 @@ def _reported(
     found = find(planner=planner, scene=scene, quantity=quantity, statistic=statistic)
     values = [r.value for r in found if source is None or r.source == source]
     return values[0] if values else None
-
-
-def _joined(planner: str, scene: str, quantity: str, statistic: str) -> str:
-    found = find(planner=planner, scene=scene, quantity=quantity, statistic=statistic)
-    return " / ".join(f"{r.value:g}" for r in found)
 
 
 def _share(ours: pd.DataFrame) -> str:

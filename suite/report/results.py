@@ -1,8 +1,8 @@
-"""A results folder, made from a store: tables, rows, a figure for each scene, and the manifest."""
+"""A results folder, made from a store: tables, rows, figures, and the manifest."""
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,26 +12,33 @@ from numpy.typing import NDArray
 
 from suite.errors import KbgaBenchError, StoreError
 from suite.report.export import export_rows, made_folder
-from suite.report.figures import plot_scene_results, save
+from suite.report.figures import LINES, plot_scene_results, save
 from suite.report.newest import newest
+from suite.report.study_figures import study_figures
 from suite.report.summary import feasible
 from suite.report.table import SUFFIX, Format, Table, render
 from suite.report.tables import all_tables
 from suite.scene import Query, Scene, scene_fingerprint
 from suite.scenes.catalogue import load_scene
-from suite.store import read_paths, read_runs, read_sessions
+from suite.store import read_first_measures, read_paths, read_runs, read_sessions
 
 MANIFEST = "manifest.json"
 
 
-def write_results(store: Path, directory: Path) -> list[Path]:
+def write_results(store: Path, directory: Path, *, leave_out: Collection[str] = ()) -> list[Path]:
     """Make a results folder from a store; the same store gives the same bytes.
+
+    There is a figure for each study, and one of the best paths for each scene where a reader can
+    still tell them apart.
 
     Parameters
     ----------
     store : Path
     directory : Path
         Made if it is missing; files of the same names are replaced.
+    leave_out : collection of str
+        Kinds of rows that are not written, for they are too many: ``events``, ``traces``,
+        ``paths``. The manifest names them.
 
     Returns
     -------
@@ -49,13 +56,14 @@ def write_results(store: Path, directory: Path) -> list[Path]:
     current = newest(runs)
     scenes = _scenes(current)
     folder = made_folder(directory)
-    tables = all_tables(runs)
+    tables = all_tables(runs, read_first_measures(store))
     files = write_tables(tables, folder, Format.MARKDOWN)
     files += write_tables(tables, folder, Format.CSV)
-    files += export_rows(store, made_folder(folder / "rows"), "parquet")
+    files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
     files += _write_figures(current, read_paths(store), scenes, folder)
     manifest = folder / MANIFEST
-    _write_text(manifest, json.dumps(_manifest(store, runs, folder, files), indent=2) + "\n")
+    made = _manifest(store, runs, folder, files, leave_out)
+    _write_text(manifest, json.dumps(made, indent=2) + "\n")
     return [*files, manifest]
 
 
@@ -96,8 +104,14 @@ def _write_figures(
     runs: pd.DataFrame, paths: dict[str, Any], scenes: list[tuple[Scene, Query]], folder: Path
 ) -> list[Path]:
     files = []
+    for name, figure in study_figures(runs).items():
+        file = folder / f"{name}.png"
+        save(figure, file)
+        files.append(file)
     for scene, query in scenes:
         here = runs[(runs["scene"] == scene.name) & (runs["query"] == query.name)]
+        if here["variant"].nunique() > len(LINES):
+            continue
         best, labels = _best_paths(here, paths)
         several = len(scene.queries) > 1
         file = folder / (f"{scene.name}-{query.name}.png" if several else f"{scene.name}.png")
@@ -126,13 +140,18 @@ def _best_paths(
 
 
 def _manifest(
-    store: Path, runs: pd.DataFrame, folder: Path, files: Sequence[Path]
+    store: Path,
+    runs: pd.DataFrame,
+    folder: Path,
+    files: Sequence[Path],
+    leave_out: Collection[str],
 ) -> dict[str, Any]:
     sessions = read_sessions(store)
     matrices = list(dict.fromkeys(session["matrix"] for session in sessions))
     commands = [f"kbga-bench run {matrix} --store STORE" for matrix in matrices]
+    options = "".join(f" --leave-out {kind}" for kind in sorted(leave_out))
     return {
-        "made_by": [*commands, f"kbga-bench results STORE {folder.name}"],
+        "made_by": [*commands, f"kbga-bench results STORE {folder.name}{options}"],
         "runs": len(runs),
         "by_status": {str(k): int(v) for k, v in runs["status"].value_counts().items()},
         "planners": list(runs["variant"].unique()),

@@ -150,7 +150,7 @@ def _digits(column: str) -> int | None:
         return AS_PRINTED
     if column.startswith("ours") and "cost" not in column and "gen" not in column:
         return None
-    return 3 if column.endswith("s)") else 1 if column.startswith("gen") else 2
+    return 3 if column.endswith("s)") else 1 if column.startswith(("gen", "checks")) else 2
 
 
 def _as_text(value: Any, digits: int | None) -> str:

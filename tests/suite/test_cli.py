@@ -247,6 +247,37 @@ def test_results_hold_tables_rows_figures_and_the_manifest(kbga_bench, filled, t
     assert manifest["by_status"] == {"solved": 2, "exhausted": 2}
 
 
+def test_rows_that_are_too_many_are_left_out_and_the_manifest_says_so(kbga_bench, filled, tmp_path):
+    kbga_bench("results", filled, tmp_path / "r", "--leave-out", "traces", "--leave-out", "events")
+    assert {p.name for p in (tmp_path / "r" / "rows").iterdir()} == {
+        "runs.parquet",
+        "paths.parquet",
+    }
+    manifest = json.loads((tmp_path / "r" / "manifest.json").read_text())
+    assert manifest["made_by"][-1] == (
+        "kbga-bench results STORE r --leave-out events --leave-out traces"
+    )
+    assert not any("traces" in file for file in manifest["sha256"])
+    # The tables are of the runs.
+    kbga_bench("results", filled, tmp_path / "r", "--leave-out", "runs", code=2)
+
+
+def test_a_scene_with_more_planners_than_can_be_told_apart_has_no_picture(
+    kbga_bench, wall_file, tmp_path
+):
+    for count in (6, 7):
+        matrix, store = tmp_path / f"{count}.toml", tmp_path / f"{count}.db"
+        matrix.write_text(
+            f'scenes = ["{wall_file}"]\nseeds = 1\n'
+            + "".join(
+                f'[[planner]]\nname = "v{i}"\nplanner = "visibility-graph"\n' for i in range(count)
+            )
+        )
+        kbga_bench("run", matrix, "--store", store, "--jobs", 2)
+        kbga_bench("results", store, tmp_path / str(count))
+        assert (tmp_path / str(count) / "wall.png").exists() == (count == 6)
+
+
 def test_the_same_store_gives_the_same_bytes(kbga_bench, filled, tmp_path):
     for name in "ab":
         kbga_bench("results", filled, tmp_path / name / "r")

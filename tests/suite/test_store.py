@@ -8,6 +8,7 @@ from suite.planner import PlanStatus
 from suite.store import (
     open_store,
     read_events,
+    read_first_measures,
     read_paths,
     read_runs,
     read_sessions,
@@ -42,6 +43,20 @@ def test_a_row_comes_back_as_it_was_written(file):
     assert row["details"] == '{"restarts":2.0}'
     assert not row["contended"]
     assert read_sessions(file) == [{"id": 1, "matrix": "m", "python": "3.11"}]
+
+
+def test_the_measures_of_the_first_generation_come_without_the_whole_trace(file):
+    record, silent = make_record(), make_record(make_cell(seed=1), trace=())
+    filled(file, record, silent)
+    first = read_first_measures(file)
+    assert first.index.tolist() == [record.cell.key]
+    assert (first["best"].iloc[0], first["mean"].iloc[0]) == (200.0, 300.0)
+    assert first["diversity"].isna().all()
+
+
+def test_runs_that_described_nothing_have_no_first_measures(file):
+    filled(file)
+    assert read_first_measures(file).empty
 
 
 def test_paths_come_back_bit_for_bit(file):

@@ -65,6 +65,13 @@ def test_the_same_figure_gives_the_same_bytes(scene, path, tmp_path, suffix):
     assert not plt.get_fignums()
 
 
+def test_a_picture_is_small_enough_to_be_kept(scene, path, tmp_path):
+    save(
+        plot_scene_results(scene, scene.query(), dict.fromkeys("abcdef", path)), tmp_path / "a.png"
+    )
+    assert (tmp_path / "a.png").stat().st_size < 100_000
+
+
 def test_a_file_that_cannot_be_a_figure_is_refused_beforehand(tmp_path):
     check_figure_file(tmp_path / "x.PNG")
     with pytest.raises(KbgaBenchError, match=r"figures are \.png"):

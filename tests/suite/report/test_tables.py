@@ -4,14 +4,12 @@ import pandas as pd
 import pytest
 
 from suite.planner import PlanStatus
-from suite.report.paper_tables import ablation, paper_static, paper_table_1, paper_tables
+from suite.report.paper_tables import paper_static, paper_table_1, paper_tables
 from suite.report.summary import summary
 from suite.report.table import Format, Table, render
 from suite.report.tables import all_tables
 from suite.store import open_store, read_runs
 from tests.suite.harness.records import make_cell, make_record
-
-WITHOUT = "kbga-without-crossover-and-mutation"
 
 
 @pytest.fixture
@@ -139,27 +137,9 @@ def test_static_results_of_clustered_and_of_the_numbers_of_obstacles(runs_of):
     assert time["paper mean"].tolist() == [11.54]
 
 
-def test_the_ablation_says_where_the_paper_never_found_a_path(runs_of):
-    frame = ablation(
-        runs_of(
-            solved(250.0, variant=WITHOUT),
-            exhausted(scene="maze", variant=WITHOUT),
-            exhausted(scene="maze"),
-            solved(131.0, scene="obstacles_40", variant=WITHOUT),
-        )
-    ).set_index(["scene", "planner"])
-    row = frame.loc[("zigzag", WITHOUT)]
-    assert (row["paper cost mean"], row["paper cost SD"]) == (251.56, "24.17")
-    assert (row["paper gen mean"], row["ours cost mean"]) == (174.0, 250.0)
-    maze = frame.loc[("maze", WITHOUT)]
-    assert (maze["paper feasible"], maze["ours feasible"]) == ("never", "0 of 1")
-    assert frame.loc[("maze", "plain-ga"), "paper feasible"] == "never"
-    assert frame.loc[("obstacles_40", WITHOUT), "paper feasible"] == ""
-
-
 def test_tables_that_the_runs_cannot_answer_are_left_out(runs_of):
     names = [table.name for table in paper_tables(runs_of(solved(156.0)))]
-    assert names == ["paper-static", "paper-ablation"]
+    assert names == ["paper-static"]
 
 
 def test_every_table_of_times_says_that_the_papers_machine_was_another(runs_of):
