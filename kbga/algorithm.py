@@ -1,6 +1,7 @@
 """KBGA as an object: set up on a scene, evolved generation by generation (paper II-D, Fig. 5)."""
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,11 @@ from kbga.measures import GenerationReport, measure
 from kbga.operators.detour import make_scratch
 from kbga.problem import make_problem
 from kbga.settings import KBGASettings
+from kbga.trace import trace_of
 from suite.scene import Query, Scene
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 class KBGA:
@@ -20,10 +25,18 @@ class KBGA:
     Parameters
     ----------
     scene : Scene
-    query : Query
-    settings : KBGASettings
-    rng : numpy.random.Generator
-        The only source of randomness.
+        See :func:`suite.scene.make_scene`.
+    query : Query or its name, optional
+        From where to where; by default the scene's first.
+    settings : KBGASettings, optional
+        By default those of the paper, and ours where it is silent.
+    rng : numpy.random.Generator or seed, optional
+        The only source of randomness; by default a fresh one, and each run another.
+
+    Raises
+    ------
+    SceneError
+        If the scene has no query of that name.
 
     Attributes
     ----------
@@ -37,11 +50,29 @@ class KBGA:
     lowest_cost : float, the lowest cost of any chromosome so far, penalties included, metres: the
         paper's best_sofar, which need not be feasible.
     generation_of_lowest : int, the generation in which it was found.
+
+    Examples
+    --------
+    >>> import shapely
+    >>> from suite.scene import make_scene
+    >>> room, wall = shapely.box(0, 0, 10, 10), np.array([(4, 0), (6, 0), (6, 8), (4, 8)])
+    >>> ga = KBGA(make_scene("one wall", room, [wall], ((1, 1), (9, 1))), rng=1)
+    >>> ga.run().tolist()
+    [[1.0, 1.0], [4.0, 8.0], [6.0, 8.0], [9.0, 1.0]]
     """
 
     def __init__(
-        self, scene: Scene, query: Query, settings: KBGASettings, rng: np.random.Generator
+        self,
+        scene: Scene,
+        query: Query | str | None = None,
+        settings: KBGASettings | None = None,
+        rng: np.random.Generator | int | None = None,
     ) -> None:
+        query = _query_of(scene, query)
+        settings = KBGASettings() if settings is None else settings
+        if not isinstance(settings, KBGASettings):
+            raise TypeError(f"settings is a {type(settings).__name__}; give a KBGASettings")
+        rng = np.random.default_rng(rng)  # a Generator stays itself
         self.settings = settings
         self._rng = rng
         self._problem = make_problem(scene.arrangement, scene.bounds, settings.resolution)
@@ -68,6 +99,7 @@ class KBGA:
         self.generation_of_best = 0
         self.lowest_cost = float("inf")
         self.generation_of_lowest = 0
+        self._reports: dict[int, GenerationReport] = {}
         first_population(
             self.population,
             query.start,
@@ -131,20 +163,71 @@ class KBGA:
         """All paths of the current population, each (n, 2), metres."""
         return [path_of(self.population, i) for i in range(len(self.population.nodes))]
 
+    def trace(self) -> "pd.DataFrame":
+        """A row for each generation that was traced: the fields of :class:`GenerationReport`.
+
+        Raises
+        ------
+        RuntimeError
+            If none was: it is ``run(trace=True)`` that traces.
+        """
+        if not self._reports:
+            raise RuntimeError("no generation was traced; run with run(trace=True)")
+        return trace_of(self._reports.values())
+
     def run(
         self,
-        on_generation: Callable[["KBGA", bool], bool] | None = None,
+        on_generation: Callable[["KBGA", bool], bool | None] | None = None,
+        *,
+        trace: bool = False,
     ) -> NDArray[np.float64] | None:
         """Evolve until a stop criterion holds; the best feasible path, or None.
+
+        Called again, it goes on from where it was ended.
 
         Parameters
         ----------
         on_generation : callable, optional
             Called with this object and whether the best path improved, for the first population
-            and after each generation. Evolution ends when it returns False.
+            and after each generation. Evolution ends when it returns False (not when it returns
+            None, as a function does that only looks on).
+        trace : bool
+            Keep a report of each generation, for :meth:`trace`.
+
+        Returns
+        -------
+        (n, 2) float64, metres, from start to goal; None if no feasible path was found.
+
+        Examples
+        --------
+        Stop as soon as a path is good enough, and look at how it went:
+
+        >>> import shapely
+        >>> from suite.scene import make_scene
+        >>> walls = [shapely.box(3, 0, 4, 8), shapely.box(6, 2, 7, 10)]
+        >>> scene = make_scene("two walls", shapely.box(0, 0, 10, 10), walls, ((1, 1), (9, 9)))
+        >>> ga = KBGA(scene, rng=1)
+        >>> path = ga.run(lambda ga, improved: ga.best_cost > 24.0, trace=True)
+        >>> ga.best_cost <= 24.0, ga.stagnant
+        (True, False)
+        >>> trace = ga.trace()
+        >>> list(trace.columns)
+        ['generation', 'best', 'mean', 'feasible_share', 'diversity', 'checks']
+        >>> len(trace) == ga.generation + 1
+        True
         """
-        going = on_generation is None or on_generation(self, self.best_path is not None)
-        while going and self.generation < self.settings.max_generations and not self.stagnant:
+        improved = self.best_path is not None
+        while True:
+            if trace:
+                self._reports[self.generation] = self.report()
+            answer = None if on_generation is None else on_generation(self, improved)
+            ended = answer is not None and not answer
+            if ended or self.generation >= self.settings.max_generations or self.stagnant:
+                return self.best_path
             improved = self.step()
-            going = on_generation is None or on_generation(self, improved)
-        return self.best_path
+
+
+def _query_of(scene: Scene, query: Query | str | None) -> Query:
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene is a {type(scene).__name__}; make a Scene with make_scene")
+    return query if isinstance(query, Query) else scene.query(query)

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 from math import isfinite
-from numbers import Integral
+from numbers import Integral, Real
+from typing import Any
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,11 +68,17 @@ class KBGASettings:
             ("stagnation", 1),
         ):
             value = getattr(self, name)
-            if not isinstance(value, Integral) or int(value) < low:
-                raise ValueError(f"{name} is {value}; it must be a whole number, {low} or more")
+            if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < low:
+                raise ValueError(f"{name} is {value!r}; it must be a whole number, {low} or more")
         for operator in ("crossover", "mutation", "repair", "deletion", "improvement"):
             name = f"{operator}_probability"
-            if not 0.0 <= getattr(self, name) <= 1.0:
-                raise ValueError(f"{name} is {getattr(self, name)}; it must lie in [0, 1]")
-        if not (isfinite(self.penalty) and self.penalty >= 0.0):
-            raise ValueError(f"penalty is {self.penalty}; it must be 0 or more, and finite")
+            value = getattr(self, name)
+            if not (_is_number(value) and 0.0 <= value <= 1.0):
+                raise ValueError(f"{name} is {value!r}; it must lie in [0, 1]")
+        if not (_is_number(self.penalty) and isfinite(self.penalty) and self.penalty >= 0.0):
+            raise ValueError(f"penalty is {self.penalty!r}; it must be 0 or more, and finite")
+
+
+def _is_number(value: Any) -> bool:
+    # To Python a bool is a number too; as a setting it is a mistake.
+    return isinstance(value, Real) and not isinstance(value, bool)

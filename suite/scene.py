@@ -144,9 +144,9 @@ def _vertex_count(polygon: Polygon) -> int:
 
 def make_scene(
     name: str,
-    workspace: Polygon,
-    obstacles: Iterable[Polygon | Obstacle],
-    queries: Mapping[str, tuple[ArrayLike, ArrayLike]],
+    workspace: Polygon | ArrayLike,
+    obstacles: Iterable[Polygon | Obstacle | ArrayLike],
+    queries: Mapping[str, tuple[ArrayLike, ArrayLike]] | tuple[ArrayLike, ArrayLike],
     *,
     properties: Mapping[str, Any] | None = None,
     path: Path | None = None,
@@ -158,12 +158,13 @@ def make_scene(
     ----------
     name : str
         Of the scene; part of the random stream of its runs.
-    workspace : Polygon
+    workspace : Polygon, or its vertices (n, 2)
         Where the robot may be, metres. Its holes become obstacles.
-    obstacles : iterable of Polygon or Obstacle
-        What sticks out of the workspace is cut off, with a :class:`SceneWarning`.
-    queries : mapping from name to (start, goal)
-        Points (2,), metres.
+    obstacles : iterable of Polygon, Obstacle, or vertices (n, 2)
+        What sticks out of the workspace is cut off, with a :class:`SceneWarning`. Vertices are
+        listed in order, either way round; the last is joined to the first.
+    queries : mapping from name to (start, goal), or one such pair
+        Points (2,), metres. A pair alone is the query ``main``.
     properties : mapping, optional
         Kept with the scene as it is.
     path : Path, optional
@@ -188,20 +189,31 @@ def make_scene(
     ... )
     >>> scene.part_count, scene.query().goal.tolist()
     (1, [9.0, 1.0])
+
+    The same from arrays of vertices:
+
+    >>> room = np.array([(0, 0), (10, 0), (10, 10), (0, 10)])
+    >>> wall = np.array([(4, 0), (6, 0), (6, 8), (4, 8)])
+    >>> make_scene("one box", room, [wall], ((1, 1), (9, 1))).query().goal.tolist()
+    [9.0, 1.0]
     """
     where = path.name if path is not None else name
+    room = _as_polygon(where, "workspace", workspace)
     named = [
-        o if isinstance(o, Obstacle) else Obstacle(f"obstacle {i}", o)
+        Obstacle(o.name, _as_polygon(where, o.name, o.polygon))
+        if isinstance(o, Obstacle)
+        else Obstacle(f"obstacle {i}", _as_polygon(where, f"obstacle {i}", o))
         for i, o in enumerate(obstacles, 1)
     ]
-    _check_polygon(where, "workspace", workspace)
+    _check_polygon(where, "workspace", room)
     for obstacle in named:
         _check_polygon(where, obstacle.name, obstacle.polygon)
     _check_unique(where, "obstacles", [o.name for o in named])
     if not np.isfinite(inflate) or inflate < 0.0:
         raise SceneError(f"{where}: inflate is {inflate}. Give a radius of 0 m or more.")
-    room, named = _normalise(where, workspace, named, inflate)
-    if not queries:
+    room, named = _normalise(where, room, named, inflate)
+    ends = queries if isinstance(queries, Mapping) else {DEFAULT_QUERY: queries}
+    if not ends:
         raise SceneError(
             f"{where}: no start. Add a feature of role 'start' and one of role 'goal'."
         )
@@ -209,14 +221,7 @@ def make_scene(
         name=name,
         workspace=room,
         obstacles=tuple(named),
-        queries=tuple(
-            Query(
-                key,
-                _as_point(where, f"start of query '{key}'", start),
-                _as_point(where, f"goal of query '{key}'", goal),
-            )
-            for key, (start, goal) in queries.items()
-        ),
+        queries=tuple(_as_query(where, key, pair) for key, pair in ends.items()),
         properties=MappingProxyType(dict(properties or {})),
         path=path,
     )
@@ -234,9 +239,26 @@ def _check_unique(where: str, what: str, names: Sequence[str]) -> None:
             )
 
 
-def _check_polygon(where: str, what: str, polygon: Polygon) -> None:
-    """Refuse a polygon that is not one, and say where it goes wrong."""
-    xy = shapely.get_coordinates(polygon)
+def _as_polygon(where: str, what: str, shape: Polygon | ArrayLike) -> Polygon:
+    """Make a polygon of vertices (n, 2); a polygon stays itself."""
+    if isinstance(shape, Polygon):
+        return shape
+    mend = "Give a shapely Polygon, or its vertices as an array (n, 2)."
+    if isinstance(shape, shapely.Geometry):
+        raise SceneError(f"{where}, {what}: it is a {type(shape).__name__}. {mend}")
+    try:
+        xy = np.array(shape, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise SceneError(f"{where}, {what}: it is no array of numbers. {mend}") from error
+    if xy.ndim != 2 or xy.shape[1] != 2:
+        raise SceneError(f"{where}, {what}: its shape is {xy.shape}. {mend}")
+    # Before shapely sees them: it refuses short rings, and warns of NaN, in words of its own.
+    _check_coordinates(where, what, xy)
+    _check_ring(where, what, xy)
+    return Polygon(xy)
+
+
+def _check_coordinates(where: str, what: str, xy: NDArray[np.float64]) -> None:
     bad = np.flatnonzero(~(np.abs(xy) <= LARGEST).all(axis=1))  # so written, NaN is bad too
     if bad.size:
         x, y = xy[bad[0]]
@@ -244,12 +266,21 @@ def _check_polygon(where: str, what: str, polygon: Polygon) -> None:
             f"{where}, {what}: vertex {bad[0] + 1} is ({x}, {y}). "
             f"Coordinates must be finite numbers, in metres, up to {LARGEST:g}."
         )
+
+
+def _check_ring(where: str, what: str, xy: NDArray[np.float64]) -> None:
+    corners = np.unique(xy, axis=0)
+    if len(corners) < 3:
+        raise SceneError(
+            f"{where}, {what}: only {len(corners)} different vertices. A ring needs three."
+        )
+
+
+def _check_polygon(where: str, what: str, polygon: Polygon) -> None:
+    """Refuse a polygon that is not one, and say where it goes wrong."""
+    _check_coordinates(where, what, shapely.get_coordinates(polygon))
     for ring in (polygon.exterior, *polygon.interiors):
-        corners = np.unique(shapely.get_coordinates(ring), axis=0)
-        if len(corners) < 3:
-            raise SceneError(
-                f"{where}, {what}: only {len(corners)} different vertices. A ring needs three."
-            )
+        _check_ring(where, what, shapely.get_coordinates(ring))
         crossing = _first_crossing(ring)
         if crossing is not None:
             i, j, x, y = crossing
@@ -322,6 +353,20 @@ def _normalise(
             suffix = f" ({i})" if len(pieces) > 1 else ""
             kept.append(Obstacle(obstacle.name + suffix, piece))
     return room, kept
+
+
+def _as_query(where: str, name: str, ends: tuple[ArrayLike, ArrayLike]) -> Query:
+    try:
+        start, goal = ends
+    except (TypeError, ValueError) as error:
+        raise SceneError(
+            f"{where}, query '{name}': {ends!r} is no pair of points. Give (start, goal)."
+        ) from error
+    return Query(
+        name,
+        _as_point(where, f"start of query '{name}'", start),
+        _as_point(where, f"goal of query '{name}'", goal),
+    )
 
 
 def _as_point(where: str, what: str, point: ArrayLike) -> NDArray[np.float64]:

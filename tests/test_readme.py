@@ -1,5 +1,6 @@
 """What the README promises: its planner is a planner, its numbers are in results."""
 
+import doctest
 import re
 from pathlib import Path
 
@@ -23,6 +24,15 @@ def test_the_planner_of_the_readme_plans():
     )
     assert plan.status == PlanStatus.SOLVED
     assert judge(scene, scene.query(), plan.path).valid
+
+
+def test_the_library_does_what_the_readme_shows():
+    blocks = re.findall(r"```pycon\n(.*?)```", README, flags=re.DOTALL)
+    parsed = doctest.DocTestParser().get_doctest("".join(blocks), {}, "README.md", None, 0)
+    assert len(parsed.examples) >= 5
+    told: list[str] = []
+    doctest.DocTestRunner().run(parsed, out=told.append)
+    assert told == []
 
 
 def test_every_link_of_the_readme_leads_somewhere():

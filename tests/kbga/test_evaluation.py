@@ -12,6 +12,7 @@ from kbga.encoding import GOAL, MAX_HITS, START, empty_population
 from kbga.evaluation import LEAST_DEPTH, escape_distance, evaluate_segment, is_free_segment
 from kbga.memory import empty_memory
 from suite.geometry.arrangement import Arrangement, arrange
+from suite.geometry.kernels import FIRST, GROUP, LAST
 from tests.kbga.laboratory import ROOM, laboratory, random_scene, scene_of, with_paths
 from tests.suite.geometry.lattice import (
     counts,
@@ -97,17 +98,95 @@ def test_c_through_a_bite_of_the_workspace_along_its_border_is_no_short_cut():
     assert record(bitten, (1, 1, 9, 1))["depth"] >= 7.0
 
 
+def test_c_a_bent_wall_from_border_to_border_is_closed_on_both_sides():
+    # From the floor up to 6, and on to the right border: joined below the segment and above it.
+    bent = Polygon([(4, 0), (6, 0), (6, 4), (10, 4), (10, 6), (4, 6)])
+    assert depth((0, 2, 10, 2), bent) == (6 - 2) + (2 - 0)
+    # Across the bend both joints lie on one side, and the corner (4, 6) is all there is on the
+    # other, 1 / sqrt(2) from the line y = x + 1.
+    assert depth((3, 4, 6, 7), bent) == pytest.approx(1 / np.sqrt(2))
+
+
+def test_c_only_the_group_that_is_joined_has_a_dead_end():
+    joined, loose = box(2, 0, 3, 5), box(6, 0.5, 7, 5)
+    assert depth((0, 1, 10, 1), joined) == 4.0
+    assert depth((0, 1, 10, 1), loose) == 0.5
+    assert depth((0, 1, 10, 1), joined, loose) == 4.0 + 0.5
+
+
 def test_d_two_groups_add_up():
     assert depth((0, 4, 10, 4), box(2, 2, 3, 5), box(6, 1, 7, 6)) == 1.0 + 2.0
+
+
+def test_d_each_group_is_left_on_its_own_side():
+    # Up 1 from the first, down 1 from the second: no one shift does both, and yet 1 + 1 counts.
+    assert depth((0, 4, 10, 4), box(2, 1, 3, 5), box(6, 3, 7, 8)) == 1.0 + 1.0
+
+
+# Concave obstacles: groups of convex parts
+
+CUP = Polygon([(2, 2), (8, 2), (8, 8), (6, 8), (6, 4), (4, 4), (4, 8), (2, 8)])
+RING = box(2, 2, 8, 8).difference(box(4, 4, 6, 6))
+
+
+def boxes(arrangement: Arrangement) -> tuple[list, list]:
+    """MMG and MMO of the obstacles: xmin, ymin, xmax, ymax of groups and of convex parts."""
+    tree, groups = arrangement.arrays.tree, arrangement.arrays.groups
+    frame = len(groups) - 1
+    parts = tree[(tree[:, FIRST] >= 0) & (tree[:, GROUP] != frame)]
+    return groups[:frame, :4].tolist(), parts[:, :4].tolist()
+
+
+@pytest.mark.parametrize(("obstacle", "count"), [(CUP, 3), (RING, 4)])
+def test_a_concave_obstacle_is_one_group_whose_convex_parts_cover_it_exactly(obstacle, count):
+    arrangement = arrange(ROOM, [obstacle])
+    groups, _ = boxes(arrangement)
+    tree, vertices = arrangement.arrays.tree, arrangement.arrays.vertices
+    rows = tree[(tree[:, FIRST] >= 0) & (tree[:, GROUP] == 0)].astype(int)
+    parts = [Polygon(vertices[row[FIRST] : row[LAST], :2]) for row in rows]
+    assert groups == [[2.0, 2.0, 8.0, 8.0]]
+    assert len(parts) == count
+    assert all(part.equals(part.convex_hull) for part in parts)
+    assert shapely.union_all(parts).equals(obstacle)
+    assert sum(part.area for part in parts) == obstacle.area
+    assert [tuple(p.bounds) for p in parts] == [tuple(b) for b in boxes(arrangement)[1]]
+
+
+def test_through_both_walls_of_a_cup_the_way_out_leads_past_the_whole_of_it():
+    assert depth((0, 7, 10, 7), CUP) == 1.0  # over the rims
+    assert depth((0, 3.5, 10, 3.5), CUP) == 1.5  # under the floor
+    assert depth((0, 5, 10, 5), CUP) == 3.0  # past the floor at 2, or the rims at 8
+
+
+def test_from_inside_a_cup_only_the_part_within_the_strip_counts():
+    # From between the walls to the right: the left wall is not in the way of any shift.
+    assert depth((5, 7, 10, 7), CUP) == 1.0
+    assert depth((5, 5, 5, 0), CUP) == 3.0  # left past x = 2 or right past x = 8, both 3 away
+    assert depth((4.5, 5, 5.5, 5), CUP) == 0.0  # in the cup, and free
+
+
+def test_out_of_a_hole_the_whole_ring_is_in_the_way():
+    assert depth((5, 5, 10, 5), RING) == 3.0
+    assert depth((5, 5.5, 10, 5.5), RING) == 2.5
+    assert depth((4.5, 5, 5.5, 5), RING) == 0.0  # in the hole, and free
 
 
 def test_with_both_ends_inside_it_must_get_out_all_the_same():
     assert depth((4, 3, 6, 3), box(2, 2, 8, 8)) == 1.0
 
 
+def test_with_an_end_in_each_wall_of_a_cup_it_must_leave_both():
+    assert depth((3, 7, 7, 7), CUP) == 1.0
+
+
+def test_with_both_ends_inside_a_wall_from_border_to_border_its_whole_width_counts():
+    assert depth((4.5, 4, 5.5, 4), box(4, 0, 6, 10)) == 10.0
+
+
 def test_a_segment_without_length_takes_the_nearest_side():
     assert depth((5, 3, 5, 3), box(4, 2, 7, 8)) == 1.0
     assert depth((5, 1, 5, 1), box(4, 2, 7, 8)) == 0.0
+    assert depth((4, 5, 4, 5), box(4, 2, 7, 8)) == 0.0  # on an edge, free
 
 
 def test_touching_costs_nothing():

@@ -41,10 +41,11 @@ def test_a_number_below_its_least_is_refused_with_name_and_range(name):
 
 
 @pytest.mark.parametrize("name", WHOLE)
-@pytest.mark.parametrize("bad", [10.5, 50.0, NAN, INF, "50"])
+@pytest.mark.parametrize("bad", [10.5, 50.0, NAN, INF, "50", None, True, np.True_, [50]])
 def test_what_counts_must_be_a_whole_number(name, bad):
-    with pytest.raises(ValueError, match=f"^{name} is {bad}; it must be a whole number"):
+    with pytest.raises(ValueError, match="it must be a whole number") as error:
         KBGASettings(**{name: bad})
+    assert str(error.value).startswith(f"{name} is {bad!r}; ")
 
 
 def test_a_numpy_integer_is_a_whole_number():
@@ -58,6 +59,28 @@ def test_a_probability_lies_between_0_and_1_both_allowed(name):
     for bad in (-0.01, 1.01, NAN, INF):
         with pytest.raises(ValueError, match=rf"^{name} is {bad}; it must lie in \[0, 1\]$"):
             KBGASettings(**{name: bad})
+
+
+WRONG = ["0.5", None, True, False, np.True_, [0.5], np.array([0.5, 0.5]), 1j]
+
+
+@pytest.mark.parametrize("name", PROBABILITIES)
+@pytest.mark.parametrize("bad", WRONG)
+def test_a_probability_is_a_number(name, bad):
+    with pytest.raises(ValueError, match=r"it must lie in \[0, 1\]$") as error:
+        KBGASettings(**{name: bad})
+    assert str(error.value).startswith(f"{name} is {bad!r}; ")
+
+
+@pytest.mark.parametrize("bad", WRONG)
+def test_a_penalty_is_a_number(bad):
+    with pytest.raises(ValueError, match=r"^penalty is .*; it must be 0 or more, and finite$"):
+        KBGASettings(penalty=bad)
+
+
+def test_numpy_numbers_are_numbers():
+    chosen = KBGASettings(penalty=np.float32(2.5), mutation_probability=np.float64(0.5))
+    assert (chosen.penalty, chosen.mutation_probability) == (2.5, 0.5)
 
 
 @pytest.mark.parametrize("bad", [-1.0, INF, NAN])

@@ -62,6 +62,60 @@ def test_fewer_than_three_vertices_are_refused():
         scene_of(Polygon())
 
 
+@pytest.mark.parametrize(
+    "corners",
+    [
+        np.array([(2, 2), (4, 2), (4, 6), (2, 6)]),
+        np.array([(2, 2), (2, 6), (4, 6), (4, 2)], dtype=np.float32),  # clockwise
+        [[2, 2], [4, 2], [4, 6], [2, 6], [2, 2]],  # closed
+    ],
+)
+def test_an_obstacle_may_be_an_array_of_its_vertices(corners):
+    (obstacle,) = scene_of(corners).obstacles
+    assert obstacle.name == "obstacle 1"
+    assert obstacle.polygon.equals(box(2, 2, 4, 6))
+    assert scene_of(Obstacle("pillar", corners)).obstacles[0].polygon.equals(box(2, 2, 4, 6))
+
+
+def test_the_workspace_may_be_an_array_of_its_vertices():
+    scene = scene_of(room=np.array([(0, 0), (10, 0), (10, 10), (0, 10)]))
+    assert scene.workspace.equals(ROOM)
+
+
+def test_the_callers_vertices_stay_their_own():
+    corners = np.array([(2.0, 2.0), (4.0, 2.0), (4.0, 6.0)])
+    scene = scene_of(corners)
+    corners[0] = 3.0
+    assert scene.obstacles[0].polygon.bounds == (2, 2, 4, 6)
+
+
+@pytest.mark.parametrize(
+    ("bad", "message"),
+    [
+        (np.zeros((4, 3)), r"its shape is \(4, 3\)\. Give a shapely Polygon, or its vertices"),
+        (np.zeros(8), r"its shape is \(8,\)\. Give"),
+        (np.zeros((1, 4, 2)), r"its shape is \(1, 4, 2\)\. Give"),
+        ([(1, 1), (2, 2, 2)], r"it is no array of numbers\. Give"),
+        ("a wall", r"it is no array of numbers\. Give"),
+        (None, r"its shape is \(\)\. Give"),
+        (shapely.MultiPolygon([box(1, 1, 2, 2), box(3, 3, 4, 4)]), r"it is a MultiPolygon\. Give"),
+        (np.array([(1, 1), (2, np.nan), (2, 2)]), r"vertex 2 is \(2.0, nan\)\. .*finite"),
+        (np.array([(1, 1), (2, 1), (2, -np.inf)]), r"vertex 3 is \(2.0, -inf\)\. .*finite"),
+        (np.zeros((0, 2)), "only 0 different vertices"),
+        (np.array([(1, 1), (2, 2)]), "only 2 different vertices. A ring needs three"),
+        (np.array([(1, 1), (2, 2), (1, 1), (2, 2)]), "only 2 different vertices"),
+        (np.array([(1, 1), (2, 2), (4, 4)]), "its area is zero"),
+        (np.array([(1, 1), (3, 3), (3, 1), (1, 3)]), r"edges 1 and 3 cross at \(2, 2\)"),
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_vertices_that_make_no_polygon_are_refused_with_what_and_where(bad, message):
+    with pytest.raises(SceneError, match=f"^test, obstacle 2: {message}"):
+        scene_of(box(6, 6, 7, 7), bad)
+    with pytest.raises(SceneError, match=f"^test, workspace: {message}"):
+        scene_of(room=bad)
+
+
 def test_zero_area_is_refused():
     with pytest.raises(SceneError, match="obstacle 1: its area is zero"):
         scene_of(Polygon([(1, 1), (2, 2), (4, 4)]))
@@ -124,6 +178,21 @@ def test_no_start_is_refused():
 def test_a_start_that_is_no_point_is_refused(point):
     with pytest.raises(SceneError, match="start of query 'main'"):
         scene_of(queries={"main": (point, (1, 1))})
+
+
+@pytest.mark.parametrize("pair", [((1, 1), (9, 1)), np.array([(1, 1), (9, 1)])])
+def test_a_pair_of_points_alone_is_the_query_main(pair):
+    scene = scene_of(queries=pair)
+    assert [q.name for q in scene.queries] == ["main"]
+    assert (scene.query().start.tolist(), scene.query().goal.tolist()) == ([1, 1], [9, 1])
+
+
+@pytest.mark.parametrize("bad", [(), ((1, 1),), ((1, 1), (2, 2), (3, 3)), 7, None])
+def test_what_is_no_pair_of_points_is_refused(bad):
+    with pytest.raises(SceneError, match=r"test, query 'main': .* Give \(start, goal\)"):
+        scene_of(queries=bad)
+    with pytest.raises(SceneError, match=r"test, query 'a': .* Give \(start, goal\)"):
+        scene_of(queries={"a": bad})
 
 
 def test_duplicate_obstacle_names_are_refused():

@@ -70,6 +70,20 @@ def test_the_part_between_two_equal_nodes_is_deleted():
     assert cut > 0
 
 
+def test_the_children_of_two_parents_with_one_node_in_common_worked_out_by_hand():
+    a, b, c, d, e = ((float(k), float(k)) for k in (2, 3, 4, 5, 6))
+    # a | b-e, a | e, a |; a-b | b-e, a-b | e, a-b |; a-b-c | b-e, a-b-c | e, a-b-c |:
+    # from b to b goes, so that the first, fourth, fifth and seventh are one.
+    expected = {"abe", "ae", "a", "ab", "abce", "abc"}
+    lab = with_paths(laboratory(scene_of()), [a, b, c], [d, b, e])
+    letters = dict(zip(lab.genes(0) + lab.genes(1), "abcdbe", strict=True))
+    found = set()
+    for _ in range(100):
+        assert lab.cross(0, 1, 0, 1)
+        found.add("".join(letters[gene] for gene in children(lab)[0]))
+    assert found == expected
+
+
 def test_a_parent_crossed_with_itself_gives_parts_of_itself():
     lab = laboratory(scene_of(), 3)
     for i in range(10):
