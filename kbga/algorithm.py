@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from kbga.encoding import empty_population, path_of
-from kbga.evolution import Rates, best_feasible, first_population, next_generation
+from kbga.encoding import Population, empty_population, path_of
+from kbga.evolution import Rates, best_feasible, first_population, next_children
+from kbga.memory import with_room
 from kbga.measures import GenerationReport, measure
 from kbga.operators.detour import make_scratch
 from kbga.problem import make_problem
@@ -43,7 +44,7 @@ class KBGA:
     population : Population
         The current parents; the random first population after construction.
     generation : int
-        Generations done.
+        Generations done, or under way.
     best_path : (n, 2) float64, metres, the best feasible path so far; None before there is one.
     best_cost : float, its length, metres; infinite before there is one.
     generation_of_best : int, the generation in which it was found.
@@ -88,10 +89,11 @@ class KBGA:
             int(settings.repair_candidates),
             int(settings.improvement_radius),
             int(settings.rounds),
+            float(settings.repair_limit),
         )
         self.population = empty_population(settings.population_size, settings.max_nodes)
         self._children = empty_population(settings.population_size, settings.max_nodes)
-        self._scratch = make_scratch()
+        self._scratch = make_scratch(max(8, int(settings.repair_candidates)))
         self._counter = np.zeros(1, np.int64)
         self.generation = 0
         self.best_path: NDArray[np.float64] | None = None
@@ -110,7 +112,8 @@ class KBGA:
             rng,
             self._counter,
         )
-        self._take_best()
+        self._take_best(self.population, 0, len(self.population.chromosomes))
+        self._take_lowest()
 
     @property
     def checks(self) -> int:
@@ -125,34 +128,54 @@ class KBGA:
             and self.generation - self.generation_of_best >= self.settings.stagnation
         )
 
-    def step(self) -> bool:
-        """Do one generation; whether it found a better feasible path."""
-        next_generation(
-            self.population,
-            self._children,
-            self._scratch,
-            self._problem,
-            self._rates,
-            self._rng,
-            self._counter,
-        )
-        self.population, self._children = self._children, self.population
-        self.generation += 1
-        return self._take_best()
+    def step(self, on_improvement: Callable[["KBGA"], object] | None = None) -> bool:
+        """Do one generation; whether it found a better feasible path.
 
-    def _take_best(self) -> bool:
-        chromosomes = self.population.chromosomes
-        lowest = float(chromosomes["cost"].min())
+        Parameters
+        ----------
+        on_improvement : callable, optional
+            Called with this object for each better path, as soon as the child is there.
+        """
+        self.generation += 1
+        improved = False
+        made, count = 0, len(self.population.chromosomes)
+        while made < count:
+            before = made
+            made = next_children(
+                self.population,
+                self._children,
+                before,
+                self.best_cost,
+                self._scratch,
+                self._problem,
+                self._rates,
+                self._rng,
+                self._counter,
+            )
+            if self._take_best(self._children, before, made):
+                improved = True
+                if on_improvement is not None:
+                    on_improvement(self)
+        self.population, self._children = self._children, self.population
+        self._problem = self._problem._replace(memory=with_room(self._problem.memory, self.checks))
+        self._take_lowest()
+        return improved
+
+    def _take_best(self, population: Population, first: int, last: int) -> bool:
+        """Note the best feasible path among some chromosomes if it is a better one; whether."""
+        best = best_feasible(population, first, last)
+        if best < 0 or not population.chromosomes["cost"][best] < self.best_cost:
+            return False
+        self.best_path = path_of(population, best)
+        self.best_cost = float(population.chromosomes["cost"][best])
+        self.generation_of_best = self.generation
+        return True
+
+    def _take_lowest(self) -> None:
+        lowest = float(self.population.chromosomes["cost"].min())
         if lowest < self.lowest_cost:
             self.lowest_cost = lowest
             self.generation_of_lowest = self.generation
-        best = best_feasible(self.population)
-        if best < 0 or not chromosomes["cost"][best] < self.best_cost:
-            return False
-        self.best_path = path_of(self.population, best)
-        self.best_cost = float(chromosomes["cost"][best])
-        self.generation_of_best = self.generation
-        return True
 
     def report(self) -> GenerationReport:
         """Measures of the current population."""
@@ -178,6 +201,7 @@ class KBGA:
     def run(
         self,
         on_generation: Callable[["KBGA", bool], bool | None] | None = None,
+        on_improvement: Callable[["KBGA"], object] | None = None,
         *,
         trace: bool = False,
     ) -> NDArray[np.float64] | None:
@@ -191,6 +215,8 @@ class KBGA:
             Called with this object and whether the best path improved, for the first population
             and after each generation. Evolution ends when it returns False (not when it returns
             None, as a function does that only looks on).
+        on_improvement : callable, optional
+            Called with this object whenever there is a better path, also within a generation.
         trace : bool
             Keep a report of each generation, for :meth:`trace`.
 
@@ -217,6 +243,8 @@ class KBGA:
         True
         """
         improved = self.best_path is not None
+        if improved and self.generation == 0 and on_improvement is not None:
+            on_improvement(self)
         while True:
             if trace:
                 self._reports[self.generation] = self.report()
@@ -224,7 +252,7 @@ class KBGA:
             ended = answer is not None and not answer
             if ended or self.generation >= self.settings.max_generations or self.stagnant:
                 return self.best_path
-            improved = self.step()
+            improved = self.step(on_improvement)
 
 
 def _query_of(scene: Scene, query: Query | str | None) -> Query:

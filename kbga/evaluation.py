@@ -8,7 +8,7 @@ what was found stays with the chromosome.
 import numpy as np
 
 from kbga.encoding import MAX_HITS, Population, distance
-from kbga.memory import UNMEASURED, slot_of
+from kbga.memory import COUNT, FIRST_HIT, ROW, UNMEASURED, Memory, key_of, slot_of
 from suite.compiled import inlined_kernel, kernel
 from suite.geometry.kernels import (
     AFTER,
@@ -73,21 +73,24 @@ def _reach(
 
 
 @inlined_kernel
-def _sides(
-    ax: float, ay: float, ux: float, uy: float, edges: np.ndarray, first: int, last: int
-) -> tuple[float, float]:
-    """How far the ends of edges lie to the left (> 0) and right (< 0) of the line from a along u.
+def _dead_ends(
+    ax: float, ay: float, ux: float, uy: float, contacts: np.ndarray, first: int, last: int
+) -> tuple[bool, bool, bool]:
+    """On which sides of the line from a along u a group is joined to the border: left, right, on.
 
-    Returns the largest and the smallest signed distance; 0 at the least and at the most.
+    A joint that lies on both sides is ahead of the segment or behind it, and in no shift's way.
     """
-    left = 0.0
-    right = 0.0
+    left = False
+    right = False
+    on = False
     for e in range(first, last):
-        h = (edges[e, 1] - ay) * ux - (edges[e, 0] - ax) * uy
-        g = (edges[e, 3] - ay) * ux - (edges[e, 2] - ax) * uy
-        left = max(left, h, g)
-        right = min(right, h, g)
-    return left, right
+        h = (contacts[e, 1] - ay) * ux - (contacts[e, 0] - ax) * uy
+        g = (contacts[e, 3] - ay) * ux - (contacts[e, 2] - ax) * uy
+        low, high = min(h, g), max(h, g)
+        left |= low >= -ON_LINE and high > ON_LINE
+        right |= high <= ON_LINE and low < -ON_LINE
+        on |= low >= -ON_LINE and high <= ON_LINE
+    return left, right, on
 
 
 @kernel
@@ -115,15 +118,15 @@ def escape_distance(
     left, right = _reach(ax, ay, ux, uy, span, arrays.boundary, first, last)
     first = int(arrays.groups[group, FIRST_CONTACT])
     last = int(arrays.groups[group, LAST_CONTACT])
-    dead_left, dead_right = _sides(ax, ay, ux, uy, arrays.contacts, first, last)
+    dead_left, dead_right, slit = _dead_ends(ax, ay, ux, uy, arrays.contacts, first, last)
     is_frame = group == arrays.groups.shape[0] - 1
-    if is_frame or (dead_left > ON_LINE and dead_right < -ON_LINE):
+    if is_frame or (dead_left and dead_right):
         return max(LEAST_DEPTH, left - right)
-    if dead_left > ON_LINE:
+    if dead_left:
         return max(LEAST_DEPTH, -right)
-    if dead_right < -ON_LINE:
+    if dead_right:
         return max(LEAST_DEPTH, left)
-    if last > first:
+    if slit:
         return max(LEAST_DEPTH, left, -right)
     return max(LEAST_DEPTH, min(left, -right))
 
@@ -158,28 +161,27 @@ def is_free_segment(
     i: int,
     k: int,
     arrays: ObstacleArrays,
-    memory: np.ndarray,
+    memory: Memory,
     counter: np.ndarray,
 ) -> bool:
     """Whether segment k of chromosome i is feasible; if so, that is written into its node.
 
     For those operators that want nothing but feasible segments: it ends at the first obstacle.
     """
-    tail, head = nodes[i, k].gene, nodes[i, k + 1].gene
-    slot = slot_of(tail, head)
+    key = key_of(nodes[i, k].gene, nodes[i, k + 1].gene)
+    slot = slot_of(memory.segments, key)
     ax, ay = nodes[i, k].x, nodes[i, k].y
     bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
-    if memory[slot].tail != tail or memory[slot].head != head:
+    if memory.segments[slot].key != key:
         counter[0] += 1
-        is_free = next_entry(ax, ay, bx, by, arrays.tree, arrays.vertices, 0) < 0 and not (
-            arrays.pinches.shape[0] > 0
-            and _is_closed_by_pinch(nodes, i, k, arrays.pinches, arrays.ways)
+        row = next_entry(ax, ay, bx, by, arrays.tree, arrays.vertices, 0)
+        memory.segments[slot].key = key
+        memory.hits[slot, COUNT] = 0
+        memory.hits[slot, ROW] = row
+        memory.segments[slot].depth = (
+            UNMEASURED if row >= 0 else _depth_at_pinches(nodes, i, k, arrays)
         )
-        memory[slot].tail = tail
-        memory[slot].head = head
-        memory[slot].depth = 0.0 if is_free else UNMEASURED
-        memory[slot].hit_count = 0
-    if memory[slot].depth != 0.0:
+    if memory.segments[slot].depth != 0.0:
         return False
     nodes[i, k].length = distance(ax, ay, bx, by)
     nodes[i, k].depth = 0.0
@@ -193,53 +195,103 @@ def evaluate_segment(
     i: int,
     k: int,
     arrays: ObstacleArrays,
-    memory: np.ndarray,
+    memory: Memory,
     counter: np.ndarray,
 ) -> None:
     """Length, depth and hit obstacles of segment k of chromosome i, written into its node."""
-    tail, head = nodes[i, k].gene, nodes[i, k + 1].gene
-    slot = slot_of(tail, head)
-    if memory[slot].tail != tail or memory[slot].head != head or memory[slot].depth == UNMEASURED:
-        counter[0] += 1
-        _find_out(nodes, i, k, arrays, memory, slot)
-    nodes[i, k].length = distance(
-        nodes[i, k].x, nodes[i, k].y, nodes[i, k + 1].x, nodes[i, k + 1].y
-    )
-    nodes[i, k].depth = memory[slot].depth
-    count = memory[slot].hit_count
-    nodes[i, k].hit_count = count
-    for h in range(count):
-        nodes[i, k].hits[h] = memory[slot].hits[h]
+    evaluate_within(nodes, i, k, arrays, memory, 0.0, 0.0, np.inf, counter)
 
 
 @kernel
-def _find_out(
-    nodes: np.ndarray, i: int, k: int, arrays: ObstacleArrays, memory: np.ndarray, slot: int
+def evaluate_within(
+    nodes: np.ndarray,
+    i: int,
+    k: int,
+    arrays: ObstacleArrays,
+    memory: Memory,
+    cost: float,
+    penalty: float,
+    limit: float,
+    counter: np.ndarray,
+) -> bool:
+    """Whether a path stays below a cost limit with segment k of chromosome i.
+
+    cost : what all else costs, the length of the segment included.
+
+    If so, all of the segment is written into its node. If not, measuring ends with the obstacle
+    that is too much; should more be asked another time, it goes on from there.
+    """
+    key = key_of(nodes[i, k].gene, nodes[i, k + 1].gene)
+    slot = slot_of(memory.segments, key)
+    if memory.segments[slot].key != key:
+        counter[0] += 1
+        memory.segments[slot].key = key
+        memory.segments[slot].depth = UNMEASURED
+        memory.hits[slot, COUNT] = 0
+        memory.hits[slot, ROW] = 0
+    if memory.segments[slot].depth < 0.0:
+        _measure(nodes, i, k, arrays, memory, slot, cost, penalty, limit)
+    depth = memory.segments[slot].depth
+    if depth < 0.0 or cost + depth * penalty >= limit:
+        return False
+    nodes[i, k].length = distance(
+        nodes[i, k].x, nodes[i, k].y, nodes[i, k + 1].x, nodes[i, k + 1].y
+    )
+    nodes[i, k].depth = depth
+    count = min(memory.hits[slot, COUNT], MAX_HITS)
+    nodes[i, k].hit_count = count
+    for h in range(count):
+        nodes[i, k].hits[h] = memory.hits[slot, FIRST_HIT + h]
+    return True
+
+
+@kernel
+def _measure(
+    nodes: np.ndarray,
+    i: int,
+    k: int,
+    arrays: ObstacleArrays,
+    memory: Memory,
+    slot: int,
+    cost: float,
+    penalty: float,
+    limit: float,
 ) -> None:
-    """Depth and hit obstacles of segment k of chromosome i, remembered in a slot."""
+    """Go on measuring the segment of a slot, until it is measured or costs too much."""
     ax, ay = nodes[i, k].x, nodes[i, k].y
     bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
     tree, vertices, groups = arrays.tree, arrays.vertices, arrays.groups
-    depth = 0.0
-    count = 0
-    row = next_entry(ax, ay, bx, by, tree, vertices, 0)
-    while row >= 0:
+    known = memory.segments[slot].depth
+    depth = 0.0 if known == UNMEASURED else -known
+    count = memory.hits[slot, COUNT]
+    row = memory.hits[slot, ROW]
+    while depth == 0.0 or cost + depth * penalty < limit:
+        row = next_entry(ax, ay, bx, by, tree, vertices, row)
+        if row < 0:
+            if count == 0:
+                depth = _depth_at_pinches(nodes, i, k, arrays)
+            memory.segments[slot].depth = depth
+            memory.hits[slot, COUNT] = count
+            return
         group = int(tree[row, GROUP])
         depth += escape_distance(ax, ay, bx, by, arrays, group)
         if count < MAX_HITS:
-            memory[slot].hits[count] = group
-            count += 1
-        row = next_entry(ax, ay, bx, by, tree, vertices, int(groups[group, AFTER]))
-    if (
-        depth == 0.0
-        and arrays.pinches.shape[0] > 0
-        and _is_closed_by_pinch(nodes, i, k, arrays.pinches, arrays.ways)
+            memory.hits[slot, FIRST_HIT + count] = group
+        count += 1
+        row = int(groups[group, AFTER])
+    memory.segments[slot].depth = -depth
+    memory.hits[slot, COUNT] = count
+    memory.hits[slot, ROW] = row
+
+
+@kernel
+def _depth_at_pinches(nodes: np.ndarray, i: int, k: int, arrays: ObstacleArrays) -> float:
+    """Depth of segment k, which enters no obstacle: 0 but for one that a pinch point closes."""
+    if arrays.pinches.shape[0] > 0 and _is_closed_by_pinch(
+        nodes, i, k, arrays.pinches, arrays.ways
     ):
-        depth = LEAST_DEPTH
-    memory[slot].tail = nodes[i, k].gene
-    memory[slot].head = nodes[i, k + 1].gene
-    memory[slot].depth = depth
-    memory[slot].hit_count = count
+        return LEAST_DEPTH
+    return 0.0
 
 
 @kernel

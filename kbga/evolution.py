@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kbga.encoding import GOAL, START, Population, contains, copy_chromosome, forget, set_node
+from kbga.encoding import GOAL, START, Population, contains, copy_chromosome, forget, length_of, set_node
 from kbga.evaluation import evaluate_segment, sum_up
 from kbga.operators.crossover import crossover
 from kbga.operators.deletion import delete
+from kbga.operators.detour import Scratch
 from kbga.operators.improvement import improve
 from kbga.operators.mutation import mutate
 from kbga.operators.repair import repair
@@ -29,6 +30,7 @@ class Rates(NamedTuple):
     repair_candidates: int
     improvement_radius: int
     rounds: int
+    repair_limit: float
 
 
 @kernel
@@ -67,18 +69,26 @@ def first_population(
 
 
 @kernel
-def next_generation(
+def next_children(
     parents: Population,
     children: Population,
-    scratch: np.ndarray,
+    first: int,
+    best: float,
+    scratch: Scratch,
     problem: Problem,
     rates: Rates,
     rng: np.random.Generator,
     counter: np.ndarray,
-) -> None:
-    """Fill ``children`` with the offspring of ``parents``, two at a time, and keep the elite."""
+) -> int:
+    """Fill ``children`` with the offspring of ``parents``, two at a time, from place ``first`` on.
+
+    It pauses after a feasible child that costs less than ``best``, so that a better path is known
+    when it is found; whoever calls it again for the rest gets the same children. The last of them
+    make room for the elite. Returns the place to go on from: the number of parents, at the end.
+    """
     count = parents.chromosomes.size
-    for c in range(0, count, 2):
+    c = first
+    while c < count:
         i = tournament(parents.chromosomes, rates.tournament_size, rng)
         j = tournament(parents.chromosomes, rates.tournament_size, rng)
         d = min(c + 1, count - 1)  # an odd population has a last child without a twin
@@ -89,26 +99,41 @@ def next_generation(
             copy_chromosome(parents, j, children, d)
             copy_chromosome(parents, i, children, c)
         for child in range(c, d + 1):
-            _transform(children, child, scratch, problem, rates, rng, counter)
-    keep_elite(parents, children)
+            _transform(children, child, best, scratch, problem, rates, rng, counter)
+        found = best_feasible(children, c, d + 1)
+        c = d + 1
+        if found >= 0 and children.chromosomes[found].cost < best:
+            break
+    if c == count:
+        keep_elite(parents, children)
+    return c
 
 
 @kernel
 def _transform(
     children: Population,
     i: int,
-    scratch: np.ndarray,
+    best: float,
+    scratch: Scratch,
     problem: Problem,
     rates: Rates,
     rng: np.random.Generator,
     counter: np.ndarray,
 ) -> None:
-    """Apply mutation and the specialised operators to a child, by probability and heuristic."""
+    """Apply mutation and the specialised operators to a child, by probability and heuristic.
+
+    best : length of the best feasible path so far, metres; infinite before there is one. A repair
+        makes a path longer, so it is lost on one that is too long already.
+    """
     if rng.random() < rates.mutation:
         mutate(children, i, problem, rates.penalty, rng, counter)
     for _ in range(rates.rounds):
         changed = False
-        if children.chromosomes[i].infeasible > 0 and rng.random() < rates.repair:
+        if (
+            children.chromosomes[i].infeasible > 0
+            and length_of(children, i) < rates.repair_limit * best
+            and rng.random() < rates.repair
+        ):
             changed |= repair(
                 children, i, scratch, problem, rates.penalty, rates.repair_candidates, rng, counter
             )
@@ -123,12 +148,12 @@ def _transform(
 
 
 @kernel
-def best_feasible(population: Population) -> int:
-    """Index of the cheapest feasible chromosome, or -1."""
+def best_feasible(population: Population, first: int, last: int) -> int:
+    """Index of the cheapest feasible chromosome from ``first`` to ``last`` (exclusive), or -1."""
     best = -1
-    cost = np.inf
-    for i in range(population.chromosomes.size):
-        if population.chromosomes[i].infeasible == 0 and population.chromosomes[i].cost < cost:
+    for i in range(first, last):
+        if population.chromosomes[i].infeasible == 0 and (
+            best < 0 or population.chromosomes[i].cost < population.chromosomes[best].cost
+        ):
             best = i
-            cost = population.chromosomes[i].cost
     return best

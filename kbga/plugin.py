@@ -36,9 +36,10 @@ class KBGAPlanner(Planner):
         A budget that ends within a generation ends the run after it.
         """
 
-        def follow(ga: KBGA, improved: bool) -> bool:
-            if improved:
-                recorder.improved(ga.best_cost, generation=ga.generation, checks=ga.checks)
+        def improved(ga: KBGA) -> None:
+            recorder.improved(ga.best_cost, generation=ga.generation, checks=ga.checks)
+
+        def follow(ga: KBGA, _: bool) -> bool:
             report = ga.report()
             recorder.describe_generation(
                 {
@@ -54,7 +55,7 @@ class KBGAPlanner(Planner):
 
         ga = KBGA(scene, query, self.settings, rng)
         recorder.snapshot("first population", ga.paths() if recorder.keep_snapshots else [])
-        path = ga.run(follow)
+        path = ga.run(follow, improved)
         found = path is not None
         return Plan(
             PlanStatus.SOLVED if found else PlanStatus.EXHAUSTED,

@@ -6,10 +6,13 @@ import numpy as np
 from numba import njit
 
 from kbga.encoding import Lattice, make_lattice, node_x, node_y
-from kbga.memory import empty_memory
+from kbga.memory import Memory, empty_memory
 from suite.compiled import kernel
 from suite.geometry.arrangement import Arrangement
 from suite.geometry.kernels import ObstacleArrays, pinch_at, segment_enters
+
+
+UNKNOWN, USABLE, CLOSED = 0, 1, 2
 
 
 class Problem(NamedTuple):
@@ -19,14 +22,17 @@ class Problem(NamedTuple):
     lattice : the lattice of intermediate nodes.
     near : (K,) int64, free lattice nodes next to the corners of each obstacle group.
     near_start : (G + 1,) int64, entries of ``near`` where each group begins.
-    memory : what is known of segments, see :mod:`kbga.memory`; the only field that changes.
+    usable : (side ** 2,) int8, what is known of each lattice node: UNKNOWN, USABLE or CLOSED.
+    memory : what is known of segments, see :mod:`kbga.memory`. It and ``usable`` fill up during a
+        run; all else stays as it is.
     """
 
     arrays: ObstacleArrays
     lattice: Lattice
     near: np.ndarray
     near_start: np.ndarray
-    memory: np.ndarray
+    usable: np.ndarray
+    memory: Memory
 
 
 def make_problem(
@@ -44,7 +50,8 @@ def make_problem(
     near, near_start = _nodes_near_corners(
         arrangement.corners, arrangement.corner_group, arrangement.arrays, lattice
     )
-    return Problem(arrangement.arrays, lattice, near, near_start, empty_memory())
+    usable = np.zeros(lattice.side**2, np.int8)
+    return Problem(arrangement.arrays, lattice, near, near_start, usable, empty_memory())
 
 
 @kernel
@@ -56,6 +63,15 @@ def is_usable(node: int, arrays: ObstacleArrays, lattice: Lattice) -> bool:
     """
     x, y = node_x(lattice, node), node_y(lattice, node)
     return not segment_enters(x, y, x, y, arrays) and pinch_at(x, y, arrays.pinches) < 0
+
+
+@kernel
+def is_known_usable(node: int, problem: Problem) -> bool:
+    """As :func:`is_usable`, which is asked once for each node."""
+    usable = problem.usable
+    if usable[node] == UNKNOWN:
+        usable[node] = USABLE if is_usable(node, problem.arrays, problem.lattice) else CLOSED
+    return usable[node] == USABLE
 
 
 @njit(cache=True)

@@ -15,7 +15,8 @@ class KBGASettings:
         crossings of the grid lines, so there are (resolution + 1) ** 2 of them.
     max_nodes : N_max, the longest chromosome, start and goal included (ours: 48, nearly twice
         what the most winding optimum of the catalogue needs).
-    initial_nodes : most intermediate nodes of a chromosome in the first population (ours).
+    initial_nodes : most intermediate nodes of a chromosome in the first population (ours: few,
+        as each makes a collision likely; the operators insert what is missing).
     crossover_probability : per pair of parents (paper III: 0.9).
     mutation_probability : per chromosome (paper III: 0.2).
     repair_probability : per infeasible chromosome (paper III: 0.9).
@@ -26,6 +27,9 @@ class KBGASettings:
         comes out alike from 10 to 1000, so it is the value that serves the plain GA best; at 1 a
         short cut through a wall of `maze` costs less than the way around it).
     repair_candidates : nodes tried around the intersected obstacle in one repair (ours).
+    repair_limit : a chromosome is repaired only while its length is below this many times the best
+        feasible path's (ours: a repair makes a path longer, so one that is longer already is not
+        worth the checks; they were three quarters of all. ``inf`` repairs without regard to that).
     improvement_radius : longest step of the local search around a node, lattice units (ours).
     rounds : how often at most a child meets repair, deletion and improvement in one generation,
         each time by probability and heuristic; a round without effect is the last (ours: the
@@ -40,7 +44,7 @@ class KBGASettings:
     population_size: int = 50
     resolution: int = 100
     max_nodes: int = 48
-    initial_nodes: int = 8
+    initial_nodes: int = 4
     crossover_probability: float = 0.9
     mutation_probability: float = 0.2
     repair_probability: float = 0.9
@@ -49,6 +53,7 @@ class KBGASettings:
     tournament_size: int = 2
     penalty: float = 100.0
     repair_candidates: int = 12
+    repair_limit: float = 1.0
     improvement_radius: int = 8
     rounds: int = 8
     max_generations: int = 500
@@ -75,6 +80,8 @@ class KBGASettings:
             value = getattr(self, name)
             if not (_is_number(value) and 0.0 <= value <= 1.0):
                 raise ValueError(f"{name} is {value!r}; it must lie in [0, 1]")
+        if not (_is_number(self.repair_limit) and self.repair_limit > 0.0):
+            raise ValueError(f"repair_limit is {self.repair_limit!r}; it must be above 0")
         if not (_is_number(self.penalty) and isfinite(self.penalty) and self.penalty >= 0.0):
             raise ValueError(f"penalty is {self.penalty!r}; it must be 0 or more, and finite")
 

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from kbga.encoding import NEEDED, NEEDED_IF_FEASIBLE, Population, close_columns, forget
-from kbga.evaluation import evaluate_segment, is_free_segment, sum_up
+from kbga.encoding import NEEDED, NEEDED_IF_FEASIBLE, Population, close_columns, distance, forget
+from kbga.evaluation import evaluate_within, is_free_segment, sum_up
+from kbga.operators.detour import Scratch
 from kbga.problem import Problem
 from suite.compiled import kernel
 
@@ -25,7 +26,7 @@ def _random_node(nodes: np.ndarray, i: int, size: int, known: int, rng: np.rando
 def delete(
     population: Population,
     i: int,
-    scratch: np.ndarray,
+    scratch: Scratch,
     problem: Problem,
     penalty: float,
     rng: np.random.Generator,
@@ -43,23 +44,25 @@ def delete(
     k = _random_node(nodes, i, population.chromosomes[i].intermediate, known, rng)
     if k == 0:
         return False
-    scratch[0, 0] = nodes[i, k - 1]
-    scratch[0, 1] = nodes[i, k + 1]
+    trial = scratch.nodes
+    trial[0, 0] = nodes[i, k - 1]
+    trial[0, 1] = nodes[i, k + 1]
     if feasible:
-        beneficial = is_free_segment(scratch, 0, 0, arrays, memory, counter)
+        beneficial = is_free_segment(trial, 0, 0, arrays, memory, counter)
     else:
-        evaluate_segment(scratch, 0, 0, arrays, memory, counter)
-        beneficial = scratch[0, 0].depth == 0.0 or scratch[0, 0].length + (
-            scratch[0, 0].depth * penalty
-        ) < (
+        known_cost = (
             nodes[i, k - 1].length
             + nodes[i, k].length
             + (nodes[i, k - 1].depth + nodes[i, k].depth) * penalty
         )
+        length = distance(trial[0, 0].x, trial[0, 0].y, trial[0, 1].x, trial[0, 1].y)
+        beneficial = is_free_segment(trial, 0, 0, arrays, memory, counter) or evaluate_within(
+            trial, 0, 0, arrays, memory, length, penalty, known_cost, counter
+        )
     if not beneficial:
         nodes[i, k].needed = known
         return False
-    nodes[i, k - 1] = scratch[0, 0]
+    nodes[i, k - 1] = trial[0, 0]
     close_columns(population, i, k, 1)
     forget(nodes, i, k - 1, k)
     sum_up(population, i, penalty)

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from kbga.encoding import Lattice, Population, contains, forget, set_node
+from kbga.encoding import Population, contains, forget, set_node
 from kbga.evaluation import is_free_segment, sum_up
-from kbga.operators.detour import detour_length
-from kbga.problem import Problem
+from kbga.operators.detour import Scratch, bring_shortest_forward, list_candidate
+from kbga.problem import Problem, is_known_usable
 from suite.compiled import kernel
-from suite.geometry.kernels import ObstacleArrays
 
 # The eight neighbours of a node, by columns and rows.
 _COLUMNS = (1, 1, 0, -1, -1, -1, 0, 1)
@@ -24,46 +23,41 @@ def _move(
     size: int,
     k: int,
     step: int,
-    scratch: np.ndarray,
-    lattice: Lattice,
-    arrays: ObstacleArrays,
-    memory: np.ndarray,
+    scratch: Scratch,
+    problem: Problem,
     counter: np.ndarray,
 ) -> bool:
     """Move node k by ``step`` lattice units to the neighbour that shortens the path most.
 
-    Whether it moved. Lengths are compared first, so that only a neighbour that would be better
-    than the best so far is tested for collision.
+    Whether it moved.
     """
+    lattice, arrays, memory = problem.lattice, problem.arrays, problem.memory
     side = lattice.side
+    trial, candidates = scratch.nodes, scratch.candidates
     column, row = nodes[i, k].gene % side, nodes[i, k].gene // side
-    scratch[0, 0] = nodes[i, k - 1]
-    scratch[0, 2] = nodes[i, k + 1]
-    best = nodes[i, k - 1].length + nodes[i, k].length - _LEAST_GAIN
-    moved = False
+    trial[0, 0] = nodes[i, k - 1]
+    trial[0, 2] = nodes[i, k + 1]
+    limit = nodes[i, k - 1].length + nodes[i, k].length - _LEAST_GAIN
+    count = 0
     for neighbour in range(8):
         new_column = column + step * _COLUMNS[neighbour]
         new_row = row + step * _ROWS[neighbour]
-        if not (0 <= new_column < side and 0 <= new_row < side):
+        if 0 <= new_column < side and 0 <= new_row < side:
+            listed = list_candidate(scratch, count, new_row * side + new_column, lattice)
+            count = listed if candidates[count].length < limit else count
+    for c in range(count):
+        bring_shortest_forward(candidates, c, count)
+        gene = candidates[c].gene
+        if not is_known_usable(gene, problem) or contains(nodes, i, size, gene):
             continue
-        gene = new_row * side + new_column
-        set_node(scratch, 0, 1, gene, lattice)
-        length = detour_length(scratch)
-        if length >= best or contains(nodes, i, size, gene):
-            continue
-        if not (
-            is_free_segment(scratch, 0, 0, arrays, memory, counter)
-            and is_free_segment(scratch, 0, 1, arrays, memory, counter)
+        set_node(trial, 0, 1, gene, lattice)
+        if is_free_segment(trial, 0, 0, arrays, memory, counter) and is_free_segment(
+            trial, 0, 1, arrays, memory, counter
         ):
-            continue
-        best = length
-        moved = True
-        scratch[1, 0] = scratch[0, 0]
-        scratch[1, 1] = scratch[0, 1]
-    if moved:
-        nodes[i, k - 1] = scratch[1, 0]
-        nodes[i, k] = scratch[1, 1]
-    return moved
+            nodes[i, k - 1] = trial[0, 0]
+            nodes[i, k] = trial[0, 1]
+            return True
+    return False
 
 
 @kernel
@@ -100,7 +94,7 @@ def _random_node(nodes: np.ndarray, i: int, size: int, rng: np.random.Generator)
 def improve(
     population: Population,
     i: int,
-    scratch: np.ndarray,
+    scratch: Scratch,
     problem: Problem,
     penalty: float,
     radius: int,
@@ -120,11 +114,10 @@ def improve(
     k = _random_node(nodes, i, size, rng)
     if k == 0:
         return False
-    lattice, arrays, memory = problem.lattice, problem.arrays, problem.memory
     step = 1
     moved = False
     while step > 0:
-        if _move(nodes, i, size, k, step, scratch, lattice, arrays, memory, counter):
+        if _move(nodes, i, size, k, step, scratch, problem, counter):
             moved = True
             step = min(2 * step, radius)
         else:
@@ -132,6 +125,6 @@ def improve(
     if moved:
         forget(nodes, i, k - 1, k + 1)
         sum_up(population, i, penalty)
-    if not _is_crowded(nodes, i, size, k, lattice.side):
+    if not _is_crowded(nodes, i, size, k, problem.lattice.side):
         nodes[i, k].settled = 1
     return moved

@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from kbga.encoding import Population, contains, forget, open_column, set_node
-from kbga.evaluation import evaluate_segment, sum_up
-from kbga.operators.detour import detour_length
+from kbga.evaluation import evaluate_within, sum_up
+from kbga.operators.detour import Scratch, bring_shortest_forward, list_candidate
 from kbga.problem import Problem
 from suite.compiled import kernel
 
@@ -27,10 +27,64 @@ def _random_infeasible_segment(
 
 
 @kernel
+def _list_candidates(
+    nodes: np.ndarray,
+    i: int,
+    size: int,
+    scratch: Scratch,
+    problem: Problem,
+    group: int,
+    most: int,
+    rng: np.random.Generator,
+) -> int:
+    """List up to ``most`` lattice nodes next to an obstacle group; how many there are.
+
+    Evenly spread over all of them, from a random one on, when there are more than are tried.
+    """
+    first = problem.near_start[group]
+    around = problem.near_start[group + 1] - first
+    tries = min(most, around)
+    if tries == 0:
+        return 0
+    offset = int(rng.random() * around)
+    count = 0
+    for attempt in range(tries):
+        gene = problem.near[first + (offset + attempt * around // tries) % around]
+        if not contains(nodes, i, size, gene):
+            count = list_candidate(scratch, count, gene, problem.lattice)
+    return count
+
+
+@kernel
+def _try_candidates(
+    scratch: Scratch, count: int, problem: Problem, penalty: float, counter: np.ndarray
+) -> bool:
+    """Put the detour that costs least into row 1 of the scratch nodes; whether there is one."""
+    trial, candidates = scratch.nodes, scratch.candidates
+    arrays, memory = problem.arrays, problem.memory
+    best = math.inf
+    for c in range(count):
+        bring_shortest_forward(candidates, c, count)
+        length = candidates[c].length
+        if length >= best:  # so are all that follow
+            break
+        set_node(trial, 0, 1, candidates[c].gene, problem.lattice)
+        if not evaluate_within(trial, 0, 0, arrays, memory, length, penalty, best, counter):
+            continue
+        cost = length + trial[0, 0].depth * penalty
+        if not evaluate_within(trial, 0, 1, arrays, memory, cost, penalty, best, counter):
+            continue
+        best = cost + trial[0, 1].depth * penalty
+        trial[1, 0] = trial[0, 0]
+        trial[1, 1] = trial[0, 1]
+    return best < math.inf
+
+
+@kernel
 def repair(
     population: Population,
     i: int,
-    scratch: np.ndarray,
+    scratch: Scratch,
     problem: Problem,
     penalty: float,
     candidates: int,
@@ -43,7 +97,7 @@ def repair(
     tries lattice nodes next to one of the obstacles hit, and takes the one whose two segments
     cost least, be it more than before: another repair may follow.
     """
-    nodes, arrays, memory = population.nodes, problem.arrays, problem.memory
+    nodes = population.nodes
     size, infeasible = population.chromosomes[i].intermediate, population.chromosomes[i].infeasible
     if infeasible == 0 or size + 2 >= nodes.shape[1]:
         return False
@@ -51,40 +105,14 @@ def repair(
     if nodes[i, k].hit_count == 0:
         return False
     group = nodes[i, k].hits[int(rng.random() * nodes[i, k].hit_count)]
-    near = problem.near
-    first = problem.near_start[group]
-    around = problem.near_start[group + 1] - first
-    tries = min(candidates, around)
-    if tries == 0:
-        return False
-    scratch[0, 0] = nodes[i, k]
-    scratch[0, 2] = nodes[i, k + 1]
-    best = math.inf
-    offset = int(rng.random() * around)
-    for attempt in range(tries):
-        # Evenly spread over all nodes near the obstacle when there are more than are tried.
-        gene = near[first + (offset + attempt * around // tries) % around]
-        if contains(nodes, i, size, gene):
-            continue
-        set_node(scratch, 0, 1, gene, problem.lattice)
-        length = detour_length(scratch)
-        if length >= best:
-            continue
-        evaluate_segment(scratch, 0, 0, arrays, memory, counter)
-        cost = length + scratch[0, 0].depth * penalty
-        if cost >= best:
-            continue
-        evaluate_segment(scratch, 0, 1, arrays, memory, counter)
-        cost += scratch[0, 1].depth * penalty
-        if cost < best:
-            best = cost
-            scratch[1, 0] = scratch[0, 0]
-            scratch[1, 1] = scratch[0, 1]
-    if best == math.inf:
+    scratch.nodes[0, 0] = nodes[i, k]
+    scratch.nodes[0, 2] = nodes[i, k + 1]
+    count = _list_candidates(nodes, i, size, scratch, problem, group, candidates, rng)
+    if not _try_candidates(scratch, count, problem, penalty, counter):
         return False
     open_column(population, i, k + 1)
-    nodes[i, k] = scratch[1, 0]
-    nodes[i, k + 1] = scratch[1, 1]
+    nodes[i, k] = scratch.nodes[1, 0]
+    nodes[i, k + 1] = scratch.nodes[1, 1]
     forget(nodes, i, k, k + 2)
     sum_up(population, i, penalty)
     return True

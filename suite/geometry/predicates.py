@@ -11,7 +11,7 @@ from numba import njit
 
 # Shewchuk 1997, section 4.3: (3 + 16 eps) eps with eps = 2^-53, bounds the rounding of the
 # determinant below relative to the sum of the magnitudes of its two products.
-_ERROR_BOUND = (3.0 + 16.0 * 2.0**-53) * 2.0**-53
+ERROR_BOUND = (3.0 + 16.0 * 2.0**-53) * 2.0**-53
 _SPLITTER = 2.0**27 + 1.0
 
 
@@ -97,7 +97,7 @@ def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float
     left = (ax - cx) * (by - cy)
     right = (ay - cy) * (bx - cx)
     determinant = left - right
-    bound = _ERROR_BOUND * (abs(left) + abs(right))
+    bound = ERROR_BOUND * (abs(left) + abs(right))
     if determinant > bound:
         return 1
     if -determinant > bound:
