@@ -10,7 +10,8 @@ from numba import njit
 from suite.exact import shortest_path
 from suite.geometry.arrangement import arrange
 from suite.geometry.kernels import segment_enters, segment_enters_tables
-from suite.scenes.catalogue import load_scene, scene_names
+from suite.scenes.catalogue import load_scene
+from tests.perf.series import SCENES
 
 SEGMENTS = 1000
 
@@ -34,7 +35,7 @@ def _segments() -> np.ndarray:
     return np.hstack([start, goal]).astype(np.float64)
 
 
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", SCENES)
 def test_thousand_collision_checks_in_compiled_code(benchmark, name):
     benchmark.group = "1000 collision checks, compiled"
     benchmark(_count_free, _segments(), load_scene(name).arrays)
@@ -58,6 +59,7 @@ def test_thousand_collision_checks_among_many_obstacles(benchmark, obstacles):
     start = rng.uniform(0.0, 100.0, (SEGMENTS, 2))
     goal = np.clip(start + rng.uniform(-1.5 * cell, 1.5 * cell, (SEGMENTS, 2)), 0.0, 100.0)
     benchmark(_count_free, np.hstack([start, goal]), arrays)
+    benchmark.extra_info.update(measure="1000 checks", obstacles=obstacles)
 
 
 def test_one_collision_check_from_python(benchmark):
@@ -67,8 +69,9 @@ def test_one_collision_check_from_python(benchmark):
     benchmark(segment_enters_tables, 1.0, 2.0, 30.0, 40.0, *tables)
 
 
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", SCENES)
 def test_exact_shortest_path(benchmark, name):
     benchmark.group = "exact shortest path"
     scene = load_scene(name)
     benchmark(shortest_path, scene, scene.query())
+    benchmark.extra_info.update(measure="exact solver", scene=name)

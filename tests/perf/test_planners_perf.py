@@ -1,26 +1,60 @@
 """How long whole runs take, compiled: `make perf`. Skipped in the ordinary test run."""
 
 from itertools import count
+from statistics import median
 
-import numpy as np
 import pytest
 
+from suite.errors import SceneError
 from suite.planner import Budget, Recorder
-from suite.plugins import load_planner
-from suite.scenes.catalogue import load_scene, scene_names
+from tests.perf.series import SCENES, SEEDS, plan, planner, scene
+
+FEW, MANY = "scattered_20", "scattered_3000"
 
 
-@pytest.mark.parametrize("scene_name", scene_names())
+@pytest.mark.parametrize("scene_name", SCENES)
 @pytest.mark.parametrize("planner_name", ["kbga", "plain-ga", "visibility-graph"])
 def test_whole_run(benchmark, planner_name, scene_name):
     benchmark.group = f"whole run on {scene_name}"
-    scene = load_scene(scene_name)
-    planner = load_planner(planner_name)()
-    planner.warm_up()
+    _measure_whole_runs(benchmark, "whole run", planner_name, scene_name)
+
+
+@pytest.mark.parametrize("scene_name", [FEW, MANY])
+def test_whole_run_among_scattered_obstacles(benchmark, scene_name):
+    benchmark.group = "whole run among scattered obstacles"
+    try:
+        scene(scene_name)
+    except SceneError as error:
+        pytest.skip(f"the catalogue has no such scene yet: {error}")
+    _measure_whole_runs(benchmark, "whole run among scattered", "kbga", scene_name)
+
+
+def _measure_whole_runs(benchmark, measure, planner_name, scene_name):
+    runner = planner(planner_name)
     seeds = count()
+    best_s = []
 
     def run():
-        rng = np.random.default_rng(next(seeds))
-        return planner.plan(scene, scene.query(), Budget(), rng, Recorder())
+        recorder = Recorder()
+        plan(runner, scene_name, next(seeds), recorder=recorder)
+        best_s.extend(i.wall_s for i in recorder.improvements[-1:])
 
-    benchmark.pedantic(run, rounds=20, warmup_rounds=1)
+    benchmark.pedantic(run, rounds=SEEDS, warmup_rounds=1)
+    benchmark.extra_info.update(
+        measure=measure, scene=scene_name, planner=planner_name,
+        best_s=median(best_s) if best_s else None,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("scene_name", SCENES)
+def test_first_population(benchmark, scene_name):
+    """Set-up, first population and one generation: what a run can't be shorter than."""
+    benchmark.group = "kbga until its first generation"
+    runner = planner("kbga")
+    seeds = count()
+    benchmark.pedantic(
+        lambda: plan(runner, scene_name, next(seeds), Budget(generations=1)),
+        rounds=SEEDS,
+        warmup_rounds=1,
+    )
+    benchmark.extra_info.update(measure="first generation", scene=scene_name)

@@ -1,0 +1,1 @@
+"""OMPL's planners: one adapter, one exact collision check, one declaration per planner."""

@@ -1,0 +1,247 @@
+"""OMPL's planners that tell their best cost while they run: the RRT* family, BIT* and AORRTC.
+
+Their termination condition is asked in each iteration; there the best cost is read and reported.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from ompl import base as ob
+from ompl import geometric as og
+
+from baselines.ompl.adapter import OmplPlanner, Problem
+from baselines.ompl.collision import do_nothing
+from baselines.ompl.settings import A_SHARE, ABOVE_0, AT_LEAST_1, OmplSettings, bound
+from suite.exact import path_length
+from suite.planner import Recorder
+
+CHECKS_BETWEEN_LOOKS = 256
+"""Checks after which an iteration that does not end has to look at the clock: about 0.2 ms."""
+
+STRAIGHT = 1.0 + 1e-9
+"""A path that is longer than the straight line by less than this factor is as good as straight.
+
+SORRT* must not go on from there: it waits for samples that could make the path shorter, for ever.
+"""
+
+
+class Watch:
+    """OMPL's question whether the run is over, asked in each iteration.
+
+    The answer reads the best cost and reports it. AORRTC keeps its condition and thereby this
+    object, which keeps AORRTC: ``let_go`` ends what would live for ever.
+    """
+
+    def __init__(
+        self, problem: Problem, recorder: Recorder, iterations: Callable[[Problem], int | None]
+    ) -> None:
+        self._best = np.inf
+        self._least = STRAIGHT * path_length(problem.straight_line)
+        self._best_cost = problem.planner.bestCost
+        self._problem = problem
+        self._collision = problem.collision
+        self._clock = problem.clock
+        self._wall_s = problem.wall_s
+        self._recorder = recorder
+        self._iterations = iterations
+        # An iteration of AORRTC may go on for ever: while it does, checks look at the clock.
+        self._collision.stop = self._look
+        self._look()
+
+    def __call__(self) -> bool:
+        """Report a better path, if there is one; whether that ends the run, or the budget does."""
+        cost = self._best_cost().value()
+        if cost < self._best:
+            self._best = cost
+            self._recorder.improved(
+                cost, generation=self._iterations(self._problem), checks=self._collision.checks
+            )
+        return (
+            self._collision.checks >= self._collision.limit
+            or self._clock() >= self._wall_s
+            or cost <= self._least
+        )
+
+    def _look(self) -> None:
+        collision = self._collision
+        if self._clock() >= self._wall_s:
+            collision.limit = collision.checks
+        collision.stop_at = min(collision.checks + CHECKS_BETWEEN_LOOKS, collision.limit)
+
+    def let_go(self) -> None:
+        """Forget the run."""
+        self._collision.stop = do_nothing
+        del self._best_cost, self._problem, self._collision
+
+
+class WatchedPlanner(OmplPlanner):
+    """Base of the planners that are watched through their termination condition."""
+
+    def _run(self, problem: Problem, recorder: Recorder) -> NDArray[np.float64] | None:
+        problem.set_up()
+        watch = Watch(problem, recorder, self._iterations)
+        problem.planner.solve(ob.PlannerTerminationCondition(watch))
+        watch()  # the last iteration may have found a better path
+        watch.let_go()
+        return problem.path()
+
+    def _iterations(self, problem: Problem) -> int | None:
+        count = getattr(problem.planner, "numIterations", None)
+        return None if count is None else int(count())
+
+
+@dataclass(frozen=True, slots=True)
+class TreeSettings(OmplSettings):
+    """Settings of the whole RRT* family; None leaves OMPL's default.
+
+    range : longest edge that extends the tree, metres.
+    goal_bias : share of samples that are the goal itself.
+    rewire_factor : how many neighbours are rewired, relative to what optimality needs.
+    k_nearest : rewire the k nearest neighbours, instead of all within a radius.
+    delay_cc : check neighbours in order of cost, and only until the first that is free.
+    tree_pruning : drop the states that can't be part of a better path.
+    prune_threshold : share by which the cost must fall before the tree is pruned.
+    new_state_rejection : reject new states that can't be part of a better path.
+    """
+
+    range: float | None = bound("setRange", ABOVE_0)
+    goal_bias: float | None = bound("setGoalBias", A_SHARE)
+    rewire_factor: float | None = bound("setRewireFactor", AT_LEAST_1)
+    k_nearest: bool | None = bound("setKNearest")
+    delay_cc: bool | None = bound("setDelayCC")
+    tree_pruning: bool | None = bound("setTreePruning")
+    prune_threshold: float | None = bound("setPruneThreshold", A_SHARE)
+    new_state_rejection: bool | None = bound("setNewStateRejection")
+
+
+@dataclass(frozen=True, slots=True)
+class RRTstarSettings(TreeSettings):
+    """Settings of RRT*: those of :class:`TreeSettings`, and where it samples.
+
+    informed_sampling : sample only where a better path can lead.
+    sample_rejection : reject samples that can't be part of a better path.
+    ordered_sampling : draw samples in batches, and use the most promising first.
+    batch_size : of ordered sampling.
+    """
+
+    informed_sampling: bool | None = bound("setInformedSampling")
+    sample_rejection: bool | None = bound("setSampleRejection")
+    ordered_sampling: bool | None = bound("setOrderedSampling")
+    batch_size: int | None = bound("setBatchSize", AT_LEAST_1)
+
+
+@dataclass(frozen=True, slots=True)
+class InformedRRTstarSettings(TreeSettings):
+    """Settings of Informed RRT*: those of :class:`TreeSettings`, and how it samples the ellipse.
+
+    What makes it informed can't be switched off: it would be another planner.
+
+    pruned_measure : count only the area that can hold a better path in the radius of rewiring.
+    sampling_attempts : samples drawn at most until one lies both in the ellipse and in the scene.
+    """
+
+    pruned_measure: bool | None = bound("setPrunedMeasure")
+    sampling_attempts: int | None = bound("setNumSamplingAttempts", AT_LEAST_1)
+
+
+@dataclass(frozen=True, slots=True)
+class SORRTstarSettings(InformedRRTstarSettings):
+    """Settings of SORRT*: those of :class:`InformedRRTstarSettings`, and its batches.
+
+    batch_size : samples that are sorted by promise before they are used.
+    """
+
+    batch_size: int | None = bound("setBatchSize", AT_LEAST_1)
+
+
+@dataclass(frozen=True, slots=True)
+class BITstarSettings(OmplSettings):
+    """Settings of BIT*; None leaves OMPL's default.
+
+    samples_per_batch : samples added to the graph at a time.
+    rewire_factor : how many neighbours are tried, relative to what optimality needs.
+    k_nearest : edges to the k nearest neighbours, instead of to all within a radius.
+    strict_queue_ordering : keep the queue of edges sorted when costs change.
+    pruning : drop the states that can't be part of a better path.
+    prune_threshold : share by which the cost must fall before the graph is pruned.
+    delay_rewiring : rewire only once there is a path.
+    just_in_time_sampling : draw samples only where the search arrives; needs ``k_nearest`` off.
+    drop_samples_on_prune : drop samples without edges when the graph is pruned.
+    """
+
+    samples_per_batch: int | None = bound("setSamplesPerBatch", AT_LEAST_1)
+    rewire_factor: float | None = bound("setRewireFactor", AT_LEAST_1)
+    k_nearest: bool | None = bound("setUseKNearest")
+    strict_queue_ordering: bool | None = bound("setStrictQueueOrdering")
+    pruning: bool | None = bound("setPruning")
+    prune_threshold: float | None = bound("setPruneThresholdFraction", A_SHARE)
+    delay_rewiring: bool | None = bound("setDelayRewiringUntilInitialSolution")
+    just_in_time_sampling: bool | None = bound("setJustInTimeSampling")
+    drop_samples_on_prune: bool | None = bound("setDropSamplesOnPrune")
+
+
+@dataclass(frozen=True, slots=True)
+class AORRTCSettings(OmplSettings):
+    """Settings of AORRTC; None leaves OMPL's default.
+
+    range : longest edge that extends a tree, metres.
+    """
+
+    range: float | None = bound("setRange", ABOVE_0)
+
+
+class RRTstarPlanner(WatchedPlanner):
+    """RRT* (Karaman and Frazzoli 2011): a tree that is rewired as it grows."""
+
+    name: ClassVar[str] = "ompl-rrtstar"
+    Settings: ClassVar[type[Any]] = RRTstarSettings
+    ompl_class: ClassVar[Callable[[Any], Any]] = og.RRTstar
+
+
+class InformedRRTstarPlanner(WatchedPlanner):
+    """Informed RRT* (Gammell et al. 2014): RRT* that samples the ellipse of better paths."""
+
+    name: ClassVar[str] = "ompl-informedrrtstar"
+    Settings: ClassVar[type[Any]] = InformedRRTstarSettings
+    ompl_class: ClassVar[Callable[[Any], Any]] = og.InformedRRTstar
+
+
+class SORRTstarPlanner(WatchedPlanner):
+    """SORRT* (Gammell, Barfoot and Srinivasa 2020): Informed RRT* with sorted samples."""
+
+    name: ClassVar[str] = "ompl-sorrtstar"
+    Settings: ClassVar[type[Any]] = SORRTstarSettings
+    ompl_class: ClassVar[Callable[[Any], Any]] = og.SORRTstar
+
+
+class BITstarPlanner(WatchedPlanner):
+    """BIT* (Gammell, Barfoot and Srinivasa 2020): batches of samples, searched as one graph."""
+
+    name: ClassVar[str] = "ompl-bitstar"
+    Settings: ClassVar[type[Any]] = BITstarSettings
+    ompl_class: ClassVar[Callable[[Any], Any]] = og.BITstar
+
+
+class AORRTCPlanner(WatchedPlanner):
+    """AORRTC (Wilson et al. 2025): RRT-Connect again and again, each time for a lower cost.
+
+    OMPL 2.0.1 has it go from the goal to the goal where start and goal see each other (its issue
+    1420). The straight line, which AORRTC tries first, is therefore tried here. Besides, each
+    run has a new object, because its best cost survives ``clear``; and one that was never set up
+    crashes the process when it goes.
+    """
+
+    name: ClassVar[str] = "ompl-aorrtc"
+    Settings: ClassVar[type[Any]] = AORRTCSettings
+    ompl_class: ClassVar[Callable[[Any], Any]] = og.AORRTC
+
+    def _run(self, problem: Problem, recorder: Recorder) -> NDArray[np.float64] | None:
+        problem.set_up()
+        line = problem.straight_line
+        if problem.collision.checkMotion(*line):
+            recorder.improved(path_length(line), checks=problem.collision.checks)
+            return line
+        return super()._run(problem, recorder)

@@ -1,0 +1,90 @@
+import dataclasses
+
+import pytest
+
+from baselines.ompl.roadmap import PRMstarPlanner, PRMstarSettings
+from baselines.ompl.watched import (
+    AORRTCPlanner,
+    AORRTCSettings,
+    BITstarPlanner,
+    BITstarSettings,
+    InformedRRTstarPlanner,
+    InformedRRTstarSettings,
+    RRTstarPlanner,
+    RRTstarSettings,
+    SORRTstarPlanner,
+    SORRTstarSettings,
+)
+from suite.planner import Budget
+from tests.baselines.ompl.laboratory import SCENES, run
+
+TREE = {
+    "range": 3.0, "goal_bias": 0.2, "rewire_factor": 1.2, "k_nearest": False, "delay_cc": False,
+    "tree_pruning": True, "prune_threshold": 0.1, "new_state_rejection": True,
+}  # fmt: skip
+
+EVERY_SETTING = (
+    RRTstarPlanner(RRTstarSettings(
+        **TREE, informed_sampling=True, sample_rejection=False, ordered_sampling=False,
+        batch_size=10,
+    )),
+    InformedRRTstarPlanner(InformedRRTstarSettings(
+        **TREE, pruned_measure=False, sampling_attempts=50,
+    )),
+    SORRTstarPlanner(SORRTstarSettings(
+        **TREE, pruned_measure=True, sampling_attempts=50, batch_size=30,
+    )),
+    BITstarPlanner(BITstarSettings(
+        samples_per_batch=50, rewire_factor=1.2, k_nearest=False, strict_queue_ordering=True,
+        pruning=True, prune_threshold=0.02, delay_rewiring=True, just_in_time_sampling=True,
+        drop_samples_on_prune=True,
+    )),
+    AORRTCPlanner(AORRTCSettings(range=2.0)),
+    PRMstarPlanner(PRMstarSettings(slice_s=0.01, slice_checks=200, slice_growth=0.2)),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("planner", EVERY_SETTING, ids=lambda p: p.name)
+def test_every_setting_reaches_ompl(planner):
+    left = [
+        field.name
+        for field in dataclasses.fields(planner.settings)
+        if getattr(planner.settings, field.name) is None
+    ]
+    assert left == []
+    assert run(planner, SCENES["one box"], Budget(checks=3000)).path is not None
+
+
+@pytest.mark.parametrize("planner", EVERY_SETTING[:-1], ids=lambda p: p.name)
+def test_settings_of_ompl_change_the_run(planner):
+    default = type(planner)()
+    plans = [run(p, SCENES["one box"], Budget(checks=3000)) for p in (planner, default)]
+    assert plans[0].claimed_cost != plans[1].claimed_cost
+
+
+def test_a_short_range_makes_many_waypoints():
+    near = RRTstarPlanner(RRTstarSettings(range=0.5))
+    assert len(run(near, SCENES["one box"], Budget(checks=10_000)).path) >= 16
+
+
+@pytest.mark.parametrize(("settings", "wrong"), [
+    (RRTstarSettings, {"range": 0.0}),
+    (RRTstarSettings, {"goal_bias": 1.5}),
+    (RRTstarSettings, {"rewire_factor": 0.5}),
+    (RRTstarSettings, {"batch_size": 0}),
+    (RRTstarSettings, {"default_wall_s": 0.0}),
+    (InformedRRTstarSettings, {"prune_threshold": -0.1}),
+    (InformedRRTstarSettings, {"sampling_attempts": 0}),
+    (SORRTstarSettings, {"batch_size": 0}),
+    (BITstarSettings, {"samples_per_batch": 0}),
+    (BITstarSettings, {"prune_threshold": 2.0}),
+    (AORRTCSettings, {"range": -1.0}),
+    (PRMstarSettings, {"slice_s": 0}),
+    (PRMstarSettings, {"slice_checks": 0}),
+    (PRMstarSettings, {"slice_growth": 0}),
+    (PRMstarSettings, {"default_wall_s": 0}),
+])  # fmt: skip
+def test_settings_that_make_no_sense_are_refused(settings, wrong):
+    (name,) = wrong
+    with pytest.raises(ValueError, match=f"{name} is .*It must"):
+        settings(**wrong)
