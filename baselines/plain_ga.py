@@ -22,6 +22,8 @@ class PlainGASettings:
 
     mutation_probability : per chromosome (paper Table 1: 0.5).
     crossover_probability : per pair of parents (paper III: 0.9).
+    initial_nodes : most intermediate nodes of a chromosome in the first population (ours: twice
+        KBGA's, for nothing but crossover makes a chromosome longer here).
     penalty : the constant C of Eq. (1), as for KBGA.
     max_generations : the paper's plain GA found its best at generation 346 on average.
     stagnation : generations without a better path before it stops, once it has one (ours: far
@@ -30,6 +32,7 @@ class PlainGASettings:
 
     mutation_probability: float = 0.5
     crossover_probability: float = 0.9
+    initial_nodes: int = 8
     penalty: float = 100.0
     max_generations: int = 500
     stagnation: int = 200
@@ -45,6 +48,7 @@ class PlainGASettings:
             repair_probability=0.0,
             deletion_probability=0.0,
             improvement_probability=0.0,
+            initial_nodes=self.initial_nodes,
             penalty=self.penalty,
             max_generations=self.max_generations,
             stagnation=self.stagnation,

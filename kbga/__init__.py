@@ -12,8 +12,9 @@ As a library, with obstacles as shapely polygons or as arrays of vertices, in me
 The paper, sentence by sentence
 -------------------------------
 Y. Hu and S. X. Yang, "A Novel Knowledge-Based Genetic Algorithm for Robot Path Planning in Complex
-Environments", sections II-A to II-D and the parameters of III. Rows marked "ours" are choices where
-the paper is silent. What section II-D says of changing environments is not carried out yet.
+Environments", sections II-A to II-D, the parameters of III and the future work of V. Rows marked
+"ours" are choices where the paper is silent. What section II-D says of changing environments is not
+carried out yet.
 
 =====  ===============================================  ============================================
 paper  what it says                                     what carries it out
@@ -94,8 +95,8 @@ ours   a few obstacles are noted for each segment: a    kbga.encoding.MAX_HITS
 II-B   operators use these records without computing    kbga.encoding.copy_chromosome
        them again                                       kbga.encoding.open_column
                                                         kbga.encoding.close_columns
-ours   segments tried and left are remembered too, the  kbga.memory
-       latest of them, as many are tried again
+ours   segments tried and left are remembered too, so   kbga.memory
+       that none is checked twice
 II-C   five operators with knowledge of the problem,    kbga.operators
        some with a small local search (Fig. 4)
 II-C   crossover: a random node of either parent; the   kbga.operators.crossover.crossover
@@ -115,6 +116,8 @@ ours   those next to its corners, where shortest paths  kbga.problem.make_proble
        bend; so many of them are tried; of several      KBGASettings.repair_candidates
        obstacles hit, a random one; the best is taken
        though it cost more than before
+ours   a repair makes a path longer: one that is too    KBGASettings.repair_limit
+       long already is left as it is
 II-C   deletion: for feasible and infeasible paths; a   kbga.operators.deletion.delete
        random node and its two neighbours
 II-C   ... deleted if that is beneficial: the path      kbga.operators.deletion.delete
@@ -130,7 +133,7 @@ ours   the search goes on from each better place, its   kbga.operators.improveme
        steps doubled or halved up to a longest one, to  KBGASettings.improvement_radius
        get far in few checks; a node at rest is not
        drawn again until a neighbour changes
-II-C   operators fire by probability and by heuristic   kbga.evolution.next_generation
+II-C   operators fire by probability and by heuristic   kbga.evolution.next_children
        knowledge
 II-D   the first population is random, and evaluated    kbga.evolution.first_population
        by Eq. (1) (Fig. 5)
@@ -142,9 +145,9 @@ ours   beside it the best feasible path, which alone    KBGA.best_path
        is returned: a robot can use no other            KBGA.best_cost
 II-D   parents are selected by tournament               kbga.selection.tournament
 ours   of two, the smallest there is                    KBGASettings.tournament_size
-II-D   of two parents, one or more operators make two   kbga.evolution.next_generation
+II-D   of two parents, one or more operators make two   kbga.evolution.next_children
        children; so for the whole population
-ours   crossover, mutation, then rounds of repair,      kbga.evolution.next_generation
+ours   crossover, mutation, then rounds of repair,      kbga.evolution.next_children
        deletion and improvement, so that a child on a   KBGASettings.rounds
        new route lives until it is repaired
 II-D   children replace parents; the best parent takes  kbga.selection.keep_elite
@@ -162,13 +165,17 @@ III    0.9 for all the other operators                  KBGASettings.crossover_p
                                                         KBGASettings.repair_probability
                                                         KBGASettings.deletion_probability
                                                         KBGASettings.improvement_probability
-ours   crossover per pair of parents, the others per    kbga.evolution.next_generation
+ours   crossover per pair of parents, the others per    kbga.evolution.next_children
        child and round
 III    tournament selection and elitism                 kbga.selection
 III    grids of 100 x 100 units                         KBGASettings.resolution
 III    "generations needed"                             KBGA.generation_of_best
 ours   the generation in which the final best was       KBGA.generation_of_best
        found first
+V      future work: a first population built with       KBGASettings.informed_share
+       knowledge of the domain                          kbga.evolution.first_population
+V      future work: probabilities of the operators      KBGASettings.adaptation_rate
+       tuned on-line                                    kbga.tuning.tuned
 =====  ===============================================  ============================================
 """
 

@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kbga.encoding import Population, empty_population, path_of
-from kbga.evolution import Rates, best_feasible, first_population, next_children
-from kbga.memory import with_room
+from kbga.evolution import best_feasible, first_population, next_children
 from kbga.measures import GenerationReport, measure
+from kbga.memory import with_room
 from kbga.operators.detour import make_scratch
 from kbga.problem import make_problem
 from kbga.settings import KBGASettings
 from kbga.trace import trace_of
+from kbga.tuning import empty_tally, rates_of, tuned
 from suite.scene import Query, Scene
 
 if TYPE_CHECKING:
@@ -77,24 +78,12 @@ class KBGA:
         self.settings = settings
         self._rng = rng
         self._problem = make_problem(scene.arrangement, scene.bounds, settings.resolution)
-        # Of one type each: an int among the floats would have the kernels compiled once more.
-        self._rates = Rates(
-            float(settings.crossover_probability),
-            float(settings.mutation_probability),
-            float(settings.repair_probability),
-            float(settings.deletion_probability),
-            float(settings.improvement_probability),
-            int(settings.tournament_size),
-            float(settings.penalty),
-            int(settings.repair_candidates),
-            int(settings.improvement_radius),
-            int(settings.rounds),
-            float(settings.repair_limit),
-        )
+        self._rates = rates_of(settings)
         self.population = empty_population(settings.population_size, settings.max_nodes)
         self._children = empty_population(settings.population_size, settings.max_nodes)
         self._scratch = make_scratch(max(8, int(settings.repair_candidates)))
         self._counter = np.zeros(1, np.int64)
+        self._tally = empty_tally()
         self.generation = 0
         self.best_path: NDArray[np.float64] | None = None
         self.best_cost = float("inf")
@@ -107,8 +96,10 @@ class KBGA:
             query.start,
             query.goal,
             int(settings.initial_nodes),
+            round(settings.informed_share * settings.population_size),
+            self._scratch,
             self._problem,
-            self._rates.penalty,
+            self._rates,
             rng,
             self._counter,
         )
@@ -151,6 +142,7 @@ class KBGA:
                 self._rates,
                 self._rng,
                 self._counter,
+                self._tally,
             )
             if self._take_best(self._children, before, made):
                 improved = True
@@ -159,6 +151,9 @@ class KBGA:
         self.population, self._children = self._children, self.population
         self._problem = self._problem._replace(memory=with_room(self._problem.memory, self.checks))
         self._take_lowest()
+        if self.settings.adaptation_rate > 0.0:
+            self._rates = tuned(self._rates, self._tally, float(self.settings.adaptation_rate))
+            self._tally[:] = 0
         return improved
 
     def _take_best(self, population: Population, first: int, last: int) -> bool:

@@ -8,6 +8,7 @@ chromosome, and edits keep both in step.
 import math
 from typing import NamedTuple
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -123,26 +124,40 @@ class Population(NamedTuple):
     Column 0 holds the start, columns 1 to ``intermediate`` the intermediate nodes, the column after
     them the goal. Segment k runs from column k to column k + 1.
 
-    nodes : (P, M) of NODE, a record array, so that the kernels run without the compiler too.
-    chromosomes : (P,) of CHROMOSOME, a record array.
+    nodes : (P, M) of NODE.
+    chromosomes : (P,) of CHROMOSOME.
     """
 
     nodes: np.ndarray
     chromosomes: np.ndarray
 
 
+def records(shape: int | tuple[int, ...], dtype: np.dtype) -> np.ndarray:
+    """Records, all zero, whose fields the kernels can read as attributes.
+
+    Compiled, they can anyway. Without the compiler it takes numpy's record arrays, which are slow.
+    """
+    zeros = np.zeros(shape, dtype)
+    return zeros.view(np.recarray) if numba.config.DISABLE_JIT else zeros  # type: ignore[attr-defined]
+
+
 def empty_population(count: int, max_nodes: int) -> Population:
     """Room for ``count`` chromosomes of at most ``max_nodes`` nodes."""
-    return Population(
-        np.zeros((count, max_nodes), NODE).view(np.recarray),
-        np.zeros(count, CHROMOSOME).view(np.recarray),
-    )
+    return Population(records((count, max_nodes), NODE), records(count, CHROMOSOME))
 
 
 def path_of(population: Population, i: int) -> NDArray[np.float64]:
     """Chromosome i as a path (n, 2), metres."""
-    nodes = population.nodes[i, : population.chromosomes["intermediate"][i] + 2]
-    return np.column_stack([nodes["x"], nodes["y"]])
+    path = np.empty((population.chromosomes["intermediate"][i] + 2, 2))
+    _copy_path(population, i, path)
+    return path
+
+
+@kernel
+def _copy_path(population: Population, i: int, path: np.ndarray) -> None:
+    for k in range(path.shape[0]):
+        path[k, 0] = population.nodes[i, k].x
+        path[k, 1] = population.nodes[i, k].y
 
 
 @kernel

@@ -1,10 +1,18 @@
 """The generations of KBGA (paper II-D, Fig. 5): select, reproduce, replace with elitism."""
 
-from typing import NamedTuple
-
 import numpy as np
+from numba import njit
 
-from kbga.encoding import GOAL, START, Population, contains, copy_chromosome, forget, length_of, set_node
+from kbga.encoding import (
+    GOAL,
+    START,
+    Population,
+    contains,
+    copy_chromosome,
+    forget,
+    length_of,
+    set_node,
+)
 from kbga.evaluation import evaluate_segment, sum_up
 from kbga.operators.crossover import crossover
 from kbga.operators.deletion import delete
@@ -12,41 +20,30 @@ from kbga.operators.detour import Scratch
 from kbga.operators.improvement import improve
 from kbga.operators.mutation import mutate
 from kbga.operators.repair import repair
-from kbga.problem import Problem
+from kbga.problem import Problem, near_count, near_node
 from kbga.selection import keep_elite, tournament
+from kbga.tuning import CROSSOVER, DELETION, IMPROVEMENT, MUTATION, REPAIR, Rates, note
 from suite.compiled import kernel
 
 
-class Rates(NamedTuple):
-    """The settings that the compiled code reads; see :class:`kbga.settings.KBGASettings`."""
-
-    crossover: float
-    mutation: float
-    repair: float
-    deletion: float
-    improvement: float
-    tournament_size: int
-    penalty: float
-    repair_candidates: int
-    improvement_radius: int
-    rounds: int
-    repair_limit: float
-
-
-@kernel
+@njit(cache=True)  # not a kernel: it must give the generator back
 def first_population(
     population: Population,
     start: np.ndarray,
     goal: np.ndarray,
     initial_nodes: int,
+    informed: int,
+    scratch: Scratch,
     problem: Problem,
-    penalty: float,
+    rates: Rates,
     rng: np.random.Generator,
     counter: np.ndarray,
 ) -> None:
     """Fill a population with random chromosomes and evaluate them.
 
-    Each has 1 to ``initial_nodes`` different nodes, drawn from the whole lattice.
+    Each has 1 to ``initial_nodes`` different nodes, drawn from the whole lattice. The first
+    ``informed`` of them know of the obstacles (future work in paper V): their nodes are drawn from
+    those next to obstacles, where shortest paths bend, and they are repaired at once.
     """
     nodes = population.nodes
     count = problem.lattice.side * problem.lattice.side
@@ -55,9 +52,7 @@ def first_population(
         size = 1 + int(rng.random() * most) if most > 0 else 0
         nodes[i, 0].gene, nodes[i, 0].x, nodes[i, 0].y = START, start[0], start[1]
         for k in range(1, size + 1):
-            gene = int(rng.random() * count)
-            while contains(nodes, i, k - 1, gene):
-                gene = (gene + 1) % count
+            gene = _new_gene(nodes, i, k - 1, i < informed, problem, rng)
             set_node(nodes, i, k, gene, problem.lattice)
         nodes[i, size + 1].gene = GOAL
         nodes[i, size + 1].x, nodes[i, size + 1].y = goal[0], goal[1]
@@ -65,10 +60,49 @@ def first_population(
         forget(nodes, i, 0, size + 1)
         for k in range(size + 1):
             evaluate_segment(nodes, i, k, problem.arrays, problem.memory, counter)
-        sum_up(population, i, penalty)
+        sum_up(population, i, rates.penalty)
+        for _ in range(rates.rounds if i < informed else 0):
+            repair(
+                population,
+                i,
+                scratch,
+                problem,
+                rates.penalty,
+                rates.repair_candidates,
+                rng,
+                counter,
+            )
 
 
 @kernel
+def _new_gene(
+    nodes: np.ndarray,
+    i: int,
+    size: int,
+    is_informed: bool,
+    problem: Problem,
+    rng: np.random.Generator,
+) -> int:
+    """A lattice number that is none of the first ``size`` nodes of chromosome i.
+
+    Of a node next to a random obstacle, if that is wanted and there is one left.
+    """
+    if is_informed:
+        group = int(rng.random() * problem.near_count.size)
+        around = near_count(group, problem)
+        offset = int(rng.random() * around)
+        for n in range(around):
+            gene = near_node(group, (offset + n) % around, problem)
+            if not contains(nodes, i, size, gene):
+                return gene
+    count = problem.lattice.side * problem.lattice.side
+    gene = int(rng.random() * count)
+    while contains(nodes, i, size, gene):
+        gene = (gene + 1) % count
+    return gene
+
+
+@njit(cache=True)  # not a kernel: it must give the generator back
 def next_children(
     parents: Population,
     children: Population,
@@ -79,6 +113,7 @@ def next_children(
     rates: Rates,
     rng: np.random.Generator,
     counter: np.ndarray,
+    tally: np.ndarray,
 ) -> int:
     """Fill ``children`` with the offspring of ``parents``, two at a time, from place ``first`` on.
 
@@ -95,11 +130,15 @@ def next_children(
         crossed = rng.random() < rates.crossover and crossover(
             parents, i, j, children, c, d, problem, rates.penalty, rng, counter
         )
-        if not crossed:
+        if crossed:
+            known = min(parents.chromosomes[i].cost, parents.chromosomes[j].cost)
+            new = min(children.chromosomes[c].cost, children.chromosomes[d].cost)
+            note(tally, CROSSOVER, known, new)
+        else:
             copy_chromosome(parents, j, children, d)
             copy_chromosome(parents, i, children, c)
         for child in range(c, d + 1):
-            _transform(children, child, best, scratch, problem, rates, rng, counter)
+            _transform(children, child, best, scratch, problem, rates, rng, counter, tally)
         found = best_feasible(children, c, d + 1)
         c = d + 1
         if found >= 0 and children.chromosomes[found].cost < best:
@@ -119,30 +158,40 @@ def _transform(
     rates: Rates,
     rng: np.random.Generator,
     counter: np.ndarray,
+    tally: np.ndarray,
 ) -> None:
     """Apply mutation and the specialised operators to a child, by probability and heuristic.
 
     best : length of the best feasible path so far, metres; infinite before there is one. A repair
         makes a path longer, so it is lost on one that is too long already.
     """
+    child = children.chromosomes[i]
     if rng.random() < rates.mutation:
+        known = child.cost
         mutate(children, i, problem, rates.penalty, rng, counter)
+        note(tally, MUTATION, known, child.cost)
     for _ in range(rates.rounds):
         changed = False
         if (
-            children.chromosomes[i].infeasible > 0
+            child.infeasible > 0
             and length_of(children, i) < rates.repair_limit * best
             and rng.random() < rates.repair
         ):
+            known = child.cost
             changed |= repair(
                 children, i, scratch, problem, rates.penalty, rates.repair_candidates, rng, counter
             )
+            note(tally, REPAIR, known, child.cost)
         if rng.random() < rates.deletion:
+            known = child.cost
             changed |= delete(children, i, scratch, problem, rates.penalty, rng, counter)
-        if children.chromosomes[i].infeasible == 0 and rng.random() < rates.improvement:
+            note(tally, DELETION, known, child.cost)
+        if child.infeasible == 0 and rng.random() < rates.improvement:
+            known = child.cost
             changed |= improve(
                 children, i, scratch, problem, rates.penalty, rates.improvement_radius, rng, counter
             )
+            note(tally, IMPROVEMENT, known, child.cost)
         if not changed:
             break
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kbga.encoding import MAX_HITS
+from kbga.encoding import MAX_HITS, records
 from suite.compiled import inlined_kernel, kernel
 
 SEGMENT = np.dtype([("key", np.int64), ("depth", np.float64)])
@@ -43,21 +43,20 @@ NOBODY = 0
 UNMEASURED = -1e-300  # less than any depth that is measured
 COUNT, ROW, FIRST_HIT = range(3)
 
-FIRST_SLOTS = 4096
-"""Slots of a new table, a power of two. 200 kB: a run that ends soon pays for no more."""
+FIRST_SLOTS = 8192
+"""Slots of a new table, a power of two. 400 kB: a run that ends soon pays for no more."""
 
 MOST_SLOTS = 65536
-"""Slots of the largest table, a power of two. 3 MB, for 50,000 segments: half as many again as the
-longest default run on the catalogue tries. Beyond that, newer segments take older ones' places."""
+"""Slots of the largest table, a power of two. 3 MB, for four times as many segments as the longest
+default run on the catalogue tries. Beyond that, newer segments take older ones' places, and some
+are checked again."""
 
-_PROBES = 8
+_PROBES = 16
 
 
 def empty_memory(slots: int = FIRST_SLOTS) -> Memory:
     """A table that remembers nothing yet."""
-    return Memory(
-        np.zeros(slots, SEGMENT).view(np.recarray), np.zeros((slots, FIRST_HIT + MAX_HITS), np.int32)
-    )
+    return Memory(records(slots, SEGMENT), np.zeros((slots, FIRST_HIT + MAX_HITS), np.int32))
 
 
 def with_room(memory: Memory, checks: int) -> Memory:
@@ -70,9 +69,11 @@ def with_room(memory: Memory, checks: int) -> Memory:
         Collision checks that it has seen. Each adds one segment at most.
     """
     slots = len(memory.segments)
-    if 2 * checks <= slots or slots >= MOST_SLOTS:
+    if 4 * checks <= slots or slots >= MOST_SLOTS:
         return memory
-    grown = empty_memory(2 * slots)
+    while slots < MOST_SLOTS and slots < 4 * checks:
+        slots *= 2
+    grown = empty_memory(slots)
     _copy_all(memory, grown)
     return grown
 
@@ -87,9 +88,10 @@ def key_of(tail: int, head: int) -> int:
 def slot_of(segments: np.ndarray, key: int) -> int:
     """Where a segment is remembered; if it is not, where it is to be written."""
     mask = segments.size - 1
+    # Two rounds of multiplying and folding; no product exceeds 63 bits.
     mixed = (key >> 32) * 1640531527 + (key & 4294967295) * 1013904223
-    mixed ^= mixed >> 32
-    home = (mixed ^ (mixed >> 15)) & mask
+    mixed = ((mixed ^ (mixed >> 29)) & 4294967295) * 1103515245
+    home = (mixed ^ (mixed >> 16)) & mask
     for probe in range(_PROBES):
         slot = (home + probe) & mask
         if segments[slot].key == key or segments[slot].key == NOBODY:

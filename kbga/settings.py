@@ -5,6 +5,9 @@ from math import isfinite
 from numbers import Integral, Real
 from typing import Any
 
+FINEST = 20_000
+"""Finest resolution: lattice numbers are 32 bits wide."""
+
 
 @dataclass(frozen=True, slots=True)
 class KBGASettings:
@@ -17,11 +20,16 @@ class KBGASettings:
         what the most winding optimum of the catalogue needs).
     initial_nodes : most intermediate nodes of a chromosome in the first population (ours: few,
         as each makes a collision likely; the operators insert what is missing).
+    informed_share : share of the first population that is built with knowledge of the obstacles:
+        of nodes next to them, and repaired at once (future work in paper V; 0: random, as in
+        the paper).
     crossover_probability : per pair of parents (paper III: 0.9).
     mutation_probability : per chromosome (paper III: 0.2).
     repair_probability : per infeasible chromosome (paper III: 0.9).
     deletion_probability : per chromosome (paper III: 0.9).
     improvement_probability : per feasible chromosome (paper III: 0.9).
+    adaptation_rate : how fast the probabilities of the operators follow what each of them achieves,
+        see :mod:`kbga.tuning` (future work in paper V; 0: they stay as they are, as in the paper).
     tournament_size : individuals that compete to be a parent (ours).
     penalty : the constant C of Eq. (1), metres of path per metre of collision depth (ours: KBGA
         comes out alike from 10 to 1000, so it is the value that serves the plain GA best; at 1 a
@@ -45,11 +53,13 @@ class KBGASettings:
     resolution: int = 100
     max_nodes: int = 48
     initial_nodes: int = 4
+    informed_share: float = 0.0
     crossover_probability: float = 0.9
     mutation_probability: float = 0.2
     repair_probability: float = 0.9
     deletion_probability: float = 0.9
     improvement_probability: float = 0.9
+    adaptation_rate: float = 0.0
     tournament_size: int = 2
     penalty: float = 100.0
     repair_candidates: int = 12
@@ -75,11 +85,14 @@ class KBGASettings:
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < low:
                 raise ValueError(f"{name} is {value!r}; it must be a whole number, {low} or more")
-        for operator in ("crossover", "mutation", "repair", "deletion", "improvement"):
-            name = f"{operator}_probability"
+        operators = ("crossover", "mutation", "repair", "deletion", "improvement")
+        shares = [f"{operator}_probability" for operator in operators]
+        for name in (*shares, "informed_share", "adaptation_rate"):
             value = getattr(self, name)
             if not (_is_number(value) and 0.0 <= value <= 1.0):
                 raise ValueError(f"{name} is {value!r}; it must lie in [0, 1]")
+        if self.resolution > FINEST:
+            raise ValueError(f"resolution is {self.resolution}; it must be at most {FINEST}")
         if not (_is_number(self.repair_limit) and self.repair_limit > 0.0):
             raise ValueError(f"repair_limit is {self.repair_limit!r}; it must be above 0")
         if not (_is_number(self.penalty) and isfinite(self.penalty) and self.penalty >= 0.0):

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kbga.encoding import NODE, Lattice, distance, node_x, node_y
+from kbga.encoding import NODE, Lattice, distance, node_x, node_y, records
 from suite.compiled import kernel
 
 CANDIDATE = np.dtype([("gene", np.int64), ("length", np.float64)], align=True)
@@ -29,9 +29,7 @@ class Scratch(NamedTuple):
 
 def make_scratch(candidates: int) -> Scratch:
     """Room to try one detour and to list that many candidates."""
-    return Scratch(
-        np.zeros((2, 3), NODE).view(np.recarray), np.zeros(candidates, CANDIDATE).view(np.recarray)
-    )
+    return Scratch(records((2, 3), NODE), records(candidates, CANDIDATE))
 
 
 @kernel

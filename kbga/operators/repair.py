@@ -7,7 +7,7 @@ import numpy as np
 from kbga.encoding import Population, contains, forget, open_column, set_node
 from kbga.evaluation import evaluate_within, sum_up
 from kbga.operators.detour import Scratch, bring_shortest_forward, list_candidate
-from kbga.problem import Problem
+from kbga.problem import Problem, near_count, near_node
 from suite.compiled import kernel
 
 
@@ -41,15 +41,14 @@ def _list_candidates(
 
     Evenly spread over all of them, from a random one on, when there are more than are tried.
     """
-    first = problem.near_start[group]
-    around = problem.near_start[group + 1] - first
+    around = near_count(group, problem)
     tries = min(most, around)
     if tries == 0:
         return 0
     offset = int(rng.random() * around)
     count = 0
     for attempt in range(tries):
-        gene = problem.near[first + (offset + attempt * around // tries) % around]
+        gene = near_node(group, (offset + attempt * around // tries) % around, problem)
         if not contains(nodes, i, size, gene):
             count = list_candidate(scratch, count, gene, problem.lattice)
     return count

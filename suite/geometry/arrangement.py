@@ -39,7 +39,7 @@ class Arrangement:
     corners : (N, 6) float64, x, y of each corner where solid is convex, then x, y of the ends of
         the two boundary edges that bound its free side: counter-clockwise from the first to the
         second everything is free, over more than half a turn.
-    corner_group : (N,) int64, the group of each corner's first boundary edge.
+    corner_group : (N,) int64, the group of each corner's first boundary edge, in ascending order.
     """
 
     solid: MultiPolygon
@@ -253,8 +253,11 @@ def _angle(origin: Point, target: Point) -> float:
 def _corners(
     sectors: Sequence[Sector], edges: _Edges
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Free sectors of more than half a turn, in order of place, and the group of each."""
-    found = sorted((v, m, n) for v, m, n in sectors if orientation(*v, *m, *n) < 0)
+    """Free sectors of more than half a turn, by group and place, and the group of each."""
+    found = sorted(
+        ((v, m, n) for v, m, n in sectors if orientation(*v, *m, *n) < 0),
+        key=lambda sector: (edges.group[sector[1], sector[0]], sector),
+    )
     rows = np.array(found, dtype=np.float64).reshape(-1, 6)
     groups = np.array([edges.group[(m, v)] for v, m, _ in found], dtype=np.int64)
     return _frozen(rows), _frozen(groups)

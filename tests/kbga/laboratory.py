@@ -20,16 +20,17 @@ from kbga.encoding import (
     path_of,
 )
 from kbga.evaluation import evaluate_segment
-from kbga.evolution import Rates, best_feasible, first_population, next_generation
+from kbga.evolution import best_feasible, first_population, next_children
 from kbga.memory import empty_memory
 from kbga.operators.crossover import crossover
 from kbga.operators.deletion import delete
-from kbga.operators.detour import make_scratch
+from kbga.operators.detour import Scratch, make_scratch
 from kbga.operators.improvement import improve
 from kbga.operators.mutation import mutate
 from kbga.operators.repair import repair
-from kbga.problem import Problem, make_problem
+from kbga.problem import Problem, make_problem, near_count, near_node
 from kbga.settings import KBGASettings
+from kbga.tuning import Rates, empty_tally, rates_of
 from suite.geometry.kernels import first_collision
 from suite.scene import Query, Scene, make_scene
 from tests.suite.geometry.lattice import Rng, random_solid
@@ -66,8 +67,9 @@ class Laboratory:
     rng: Rng
     population: Population
     children: Population
-    scratch: np.ndarray
+    scratch: Scratch
     counter: NDArray[np.int64]
+    tally: NDArray[np.int64]
 
     def mutate(self, i: int) -> bool:
         return mutate(self.population, i, self.problem, self.rates.penalty, self.rng, self.counter)
@@ -123,15 +125,19 @@ class Laboratory:
         )
 
     def next_generation(self) -> None:
-        next_generation(
+        done = next_children(
             self.population,
             self.children,
+            0,
+            -1.0,  # nothing costs less: no pause
             self.scratch,
             self.problem,
             self.rates,
             self.rng,
             self.counter,
+            self.tally,
         )
+        assert done == len(self.population.chromosomes)
         self.population, self.children = self.children, self.population
 
     def genes(self, i: int) -> list[int]:
@@ -145,6 +151,17 @@ class Laboratory:
         return bool(self.population.chromosomes["infeasible"][i] == 0)
 
 
+def near_nodes(problem: Problem, group: int) -> list[int]:
+    """Free lattice nodes next to the corners of an obstacle group."""
+    count = near_count(group, problem)
+    return [int(near_node(group, n, problem)) for n in range(count)]
+
+
+def all_near_nodes(problem: Problem) -> list[int]:
+    """Those of all groups, and of the frame."""
+    return [n for g in range(len(problem.arrays.groups)) for n in near_nodes(problem, g)]
+
+
 def genes_of(population: Population, i: int) -> list[int]:
     size = int(population.chromosomes["intermediate"][i])
     return population.nodes["gene"][i, 1 : size + 1].tolist()
@@ -153,18 +170,7 @@ def genes_of(population: Population, i: int) -> list[int]:
 def laboratory(scene: Scene, seed: int = 0, **settings: float) -> Laboratory:
     """A first population on a scene, with any of KBGASettings."""
     chosen = KBGASettings(**{"resolution": 10, "population_size": 10, **settings})
-    rates = Rates(
-        float(chosen.crossover_probability),
-        float(chosen.mutation_probability),
-        float(chosen.repair_probability),
-        float(chosen.deletion_probability),
-        float(chosen.improvement_probability),
-        chosen.tournament_size,
-        float(chosen.penalty),
-        chosen.repair_candidates,
-        chosen.improvement_radius,
-        chosen.rounds,
-    )
+    rates = rates_of(chosen)
     query = scene.query()
     made = Laboratory(
         query=query,
@@ -174,16 +180,19 @@ def laboratory(scene: Scene, seed: int = 0, **settings: float) -> Laboratory:
         rng=np.random.default_rng(seed),
         population=empty_population(chosen.population_size, chosen.max_nodes),
         children=empty_population(chosen.population_size, chosen.max_nodes),
-        scratch=make_scratch(),
+        scratch=make_scratch(max(8, chosen.repair_candidates)),
         counter=np.zeros(1, np.int64),
+        tally=empty_tally(),
     )
     first_population(
         made.population,
         query.start,
         query.goal,
         chosen.initial_nodes,
+        round(chosen.informed_share * chosen.population_size),
+        made.scratch,
         made.problem,
-        rates.penalty,
+        rates,
         made.rng,
         made.counter,
     )
@@ -252,7 +261,7 @@ def check(lab: Laboratory, population: Population | None = None) -> None:
     population = lab.population if population is None else population
     for i in range(len(population.nodes)):
         check_chromosome(lab, population, i)
-    best = best_feasible(population)
+    best = best_feasible(population, 0, len(population.nodes))
     if best >= 0:
         assert first_collision(path_of(population, best), lab.problem.arrays) == -1
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from numba import config
 
 from kbga.algorithm import KBGA
-from kbga.evolution import next_generation
+from kbga.evolution import next_children
 from kbga.settings import KBGASettings
 from suite.exact import shortest_path
 from suite.geometry.kernels import first_collision
@@ -245,11 +245,11 @@ def test_the_path_that_it_returns_is_not_touched_by_later_generations():
 @pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
 def test_whole_numbers_for_probabilities_do_not_compile_it_again():
     evolve(scene_of(ends=ENDS))
-    compiled = len(next_generation.signatures)
+    compiled = len(next_children.signatures)
     evolve(
         scene_of(),
         KBGASettings(
             mutation_probability=0, crossover_probability=1, penalty=20, tournament_size=np.int64(2)
         ),
     )
-    assert len(next_generation.signatures) == compiled
+    assert len(next_children.signatures) == compiled

@@ -21,7 +21,7 @@ from kbga.encoding import (
     path_of,
     set_node,
 )
-from tests.kbga.laboratory import laboratory, scene_of
+from tests.kbga.laboratory import all_near_nodes, laboratory, scene_of
 
 BOUNDS = [
     (0.0, 0.0, 100.0, 100.0),
@@ -157,5 +157,5 @@ def test_nodes_on_the_walls_of_a_decimal_scene_are_free():
         shapely.box(0.3, 0.3, 0.6, 0.7), room=shapely.box(0, 0, 1, 1), ends=((0, 0), (1, 1))
     )
     lab = laboratory(walls, resolution=10)
-    near = lab.problem.near.tolist()
+    near = all_near_nodes(lab.problem)
     assert {3 * 11 + 3, 3 * 11 + 6, 7 * 11 + 3, 7 * 11 + 6} <= set(near)  # the four corners

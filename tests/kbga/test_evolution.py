@@ -149,9 +149,9 @@ def test_the_best_feasible_chromosome_need_not_be_the_cheapest():
     wall = scene_of(shapely.box(4, 2, 6, 8), ends=((0, 5), (10, 5)))
     lab = with_paths(laboratory(wall, penalty=0.1, population_size=3), [(5, 9)], [], [(5, 10)])
     assert lab.cost(1) < lab.cost(0) < lab.cost(2)
-    assert best_feasible(lab.population) == 0
+    assert best_feasible(lab.population, 0, 3) == 0
 
 
 def test_without_a_feasible_chromosome_there_is_no_best_one():
     wall = scene_of(shapely.box(4, 0, 6, 10), ends=((0, 5), (10, 5)))
-    assert best_feasible(laboratory(wall).population) == -1
+    assert best_feasible(laboratory(wall).population, 0, 10) == -1

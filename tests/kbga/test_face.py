@@ -178,8 +178,8 @@ def test_the_face_does_not_load_pandas():
 def test_kernels_are_kept_with_these_sources_when_the_face_is_imported_first(tmp_path):
     code = (
         "from kbga import KBGA\n"
-        "from kbga.evolution import next_generation\n"
-        "print(next_generation._cache.cache_path)"
+        "from kbga.evolution import next_children\n"
+        "print(next_children._cache.cache_path)"
     )
     where = in_a_new_process(code, NUMBA_CACHE_DIR=str(tmp_path), NUMBA_DISABLE_JIT="0")
     code = "from suite.compiled import use_cache_of_these_sources as use; print(use())"

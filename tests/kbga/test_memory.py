@@ -4,8 +4,17 @@ import numpy as np
 import shapely
 
 from kbga.encoding import empty_population
-from kbga.evaluation import evaluate_segment, is_free_segment
-from kbga.memory import SLOTS, UNMEASURED, empty_memory, slot_of
+from kbga.evaluation import evaluate_segment, evaluate_within, is_free_segment
+from kbga.memory import (
+    FIRST_SLOTS,
+    MOST_SLOTS,
+    NOBODY,
+    UNMEASURED,
+    empty_memory,
+    key_of,
+    slot_of,
+    with_room,
+)
 from suite.geometry.arrangement import arrange
 
 WALL = arrange(shapely.box(0, 0, 10, 10), [shapely.box(4, 0, 6, 7)]).arrays
@@ -16,7 +25,8 @@ BLOCKED = ((1.0, 1.0), (9.0, 1.0))
 class Bench:
     """A path of one segment, a memory and a counter."""
 
-    def __init__(self) -> None:
+    def __init__(self, arrays=WALL) -> None:
+        self.arrays = arrays
         self.memory = empty_memory()
         self.counter = np.zeros(1, np.int64)
         self.nodes = empty_population(1, 2).nodes
@@ -26,11 +36,20 @@ class Bench:
         self.nodes["x"][0], self.nodes["y"][0] = np.transpose(ends)
 
     def evaluate(self) -> float:
-        evaluate_segment(self.nodes, 0, 0, WALL, self.memory, self.counter)
+        evaluate_segment(self.nodes, 0, 0, self.arrays, self.memory, self.counter)
         return float(self.nodes["depth"][0, 0])
 
+    def stays_below(self, limit: float) -> bool:
+        """With a penalty of 1, so that costs are length and depth."""
+        args = self.arrays, self.memory, 8.0, 1.0, limit, self.counter
+        return bool(evaluate_within(self.nodes, 0, 0, *args))
+
+    def known_depth(self) -> float:
+        segments = self.memory.segments
+        return float(segments["depth"][slot_of(segments, key_of(7, 8))])
+
     def is_free(self) -> bool:
-        return bool(is_free_segment(self.nodes, 0, 0, WALL, self.memory, self.counter))
+        return bool(is_free_segment(self.nodes, 0, 0, self.arrays, self.memory, self.counter))
 
 
 def test_a_segment_is_checked_once():
@@ -51,16 +70,33 @@ def test_a_free_segment_needs_no_measuring_after_the_quick_test():
     assert bench.counter[0] == 1
 
 
-def test_an_infeasible_segment_is_measured_when_its_depth_is_wanted():
+def test_an_infeasible_segment_is_measured_when_its_depth_is_wanted_from_where_the_check_ended():
     bench = Bench()
     bench.put(BLOCKED)
     assert not bench.is_free()
-    assert bench.memory["depth"][slot_of(7, 8)] == UNMEASURED
+    assert bench.known_depth() == UNMEASURED
     assert not bench.is_free()
-    assert bench.counter[0] == 1
     assert bench.evaluate() == 6.0
     assert bench.nodes["hits"][0, 0, 0] == 0
-    assert bench.counter[0] == 2
+    assert bench.counter[0] == 1
+
+
+def test_measuring_ends_with_the_obstacle_that_costs_too_much_and_goes_on_from_there():
+    slabs = [
+        shapely.box(x, 0, x + 1, 9) for x in (2, 4, 6)
+    ]  # each 8 m deep, as they stand on the border
+    arrays = arrange(shapely.box(0, 0, 10, 10), slabs).arrays
+    bench = Bench(arrays)
+    bench.put(BLOCKED)
+    assert not bench.stays_below(8.0 + 8.0)
+    assert -bench.known_depth() == 8.0
+    assert not bench.stays_below(8.0 + 9.0)
+    assert -bench.known_depth() == 16.0
+    assert bench.stays_below(8.0 + 24.5)
+    assert (bench.nodes["depth"][0, 0], bench.nodes["hit_count"][0, 0]) == (24.0, 3)
+    assert sorted(bench.nodes["hits"][0, 0, :3].tolist()) == [0, 1, 2]
+    assert not bench.stays_below(8.0 + 24.0)
+    assert bench.counter[0] == 1
 
 
 def test_the_two_directions_of_a_segment_are_two_segments():
@@ -72,19 +108,49 @@ def test_the_two_directions_of_a_segment_are_two_segments():
 
 
 def test_segments_of_one_slot_do_not_answer_for_each_other():
-    other = next(n for n in range(9, 10**6) if slot_of(7, n) == slot_of(7, 8))
+    nobody = empty_memory().segments
+    home = slot_of(nobody, key_of(7, 8))
+    others = [n for n in range(9, 400_000) if slot_of(nobody, key_of(7, n)) == home]
     bench = Bench()
-    for _ in range(3):
-        bench.put(FREE, 7, 8)
-        assert bench.evaluate() == 0.0
-        bench.put(BLOCKED, 7, other)
-        assert bench.evaluate() == 6.0
-    assert bench.counter[0] == 6
+    for _ in range(2):
+        for k, other in enumerate([8, *others[:30]]):
+            bench.put(BLOCKED if k % 2 else FREE, 7, other)
+            assert bench.evaluate() == (6.0 if k % 2 else 0.0)
+    assert bench.counter[0] > 31, "so many have no room side by side"
+
+
+def test_a_crowded_table_grows_and_forgets_nothing():
+    bench = Bench()
+    for n in range(FIRST_SLOTS // 4 + 1):
+        bench.put(BLOCKED if n % 2 else FREE, 7, n)
+        bench.evaluate()
+    assert with_room(bench.memory, FIRST_SLOTS // 4) is bench.memory
+    bench.memory = with_room(bench.memory, int(bench.counter[0]))
+    assert len(bench.memory.segments) == 2 * FIRST_SLOTS
+    known = int((bench.memory.segments["key"] != NOBODY).sum())
+    checks = int(bench.counter[0])
+    for n in range(FIRST_SLOTS // 4 + 1):
+        bench.put(BLOCKED if n % 2 else FREE, 7, n)
+        assert bench.evaluate() == (6.0 if n % 2 else 0.0)
+    assert bench.counter[0] == checks == known, "nothing was checked again"
+
+
+def test_the_largest_table_stays_as_it_is():
+    largest = empty_memory(MOST_SLOTS)
+    assert with_room(largest, 10**9) is largest
 
 
 def test_slots_are_in_range_and_used_evenly():
     rng = np.random.default_rng(0)
     pairs = rng.integers(-2, 401 * 401, (20_000, 2)).tolist()
-    slots = np.array([slot_of(tail, head) for tail, head in pairs])
-    assert 0 <= slots.min() <= slots.max() < SLOTS
-    assert np.bincount(slots, minlength=SLOTS).max() < 25
+    nobody = empty_memory().segments
+    slots = np.array([slot_of(nobody, key_of(tail, head)) for tail, head in pairs])
+    assert 0 <= slots.min() <= slots.max() < FIRST_SLOTS
+    assert np.bincount(slots, minlength=FIRST_SLOTS).max() < 25
+
+
+def test_keys_tell_all_segments_apart():
+    ends = [-2, -1, 0, 1, 2**31 - 1]
+    keys = {key_of(tail, head) for tail in ends[1:] for head in ends}
+    assert len(keys) == 4 * 5
+    assert NOBODY not in keys

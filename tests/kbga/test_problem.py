@@ -7,12 +7,8 @@ from hypothesis import strategies as st
 
 from kbga.problem import Problem, make_problem
 from suite.scene import Scene
-from tests.kbga.laboratory import random_scene, scene_of
+from tests.kbga.laboratory import all_near_nodes, near_nodes, random_scene, scene_of
 from tests.suite.geometry.lattice import counts, pinches
-
-
-def near_nodes(problem: Problem, group: int) -> list[int]:
-    return problem.near[problem.near_start[group] : problem.near_start[group + 1]].tolist()
 
 
 def problem_of(scene: Scene, resolution: int) -> Problem:
@@ -34,8 +30,6 @@ def test_nodes_near_an_obstacle_are_free_and_next_to_its_corners(seed, resolutio
     problem = problem_of(scene, resolution)
     solid = scene.arrangement.solid
     bad = {(p.x, p.y) for p, _ in pinches(solid)}
-    assert problem.near_start[0] == 0
-    assert problem.near_start[-1] == len(problem.near)
     for group in range(len(problem.arrays.groups)):
         nodes = near_nodes(problem, group)
         assert len(set(nodes)) == len(nodes)
@@ -64,8 +58,7 @@ def test_every_corner_on_a_free_lattice_node_has_that_node(seed):
 
 def test_without_obstacles_there_is_nothing_to_be_near_to():
     problem = problem_of(scene_of(), 10)
-    assert problem.near.size == 0
-    assert problem.near_start.tolist() == [0, 0]
+    assert all_near_nodes(problem) == []
 
 
 def test_a_pinch_point_is_no_place_for_a_node():

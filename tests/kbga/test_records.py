@@ -8,9 +8,11 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kbga import KBGA, KBGASettings, evaluation, make_scene, memory
+from kbga import KBGA, KBGASettings, evaluation, make_scene
 from kbga.encoding import Population
 from kbga.evaluation import sum_up
+from kbga.memory import NOBODY
+from suite.scenes.catalogue import load_scene, scene_names
 from tests.kbga.laboratory import Laboratory, laboratory, random_scene
 from tests.suite.geometry.lattice import COMPILED, counts
 
@@ -70,18 +72,25 @@ def test_a_child_has_the_records_of_its_parents_and_one_new_segment_at_most(seed
 # Checks
 
 
+@pytest.mark.parametrize("scene_name", scene_names())
+def test_no_check_is_made_twice_in_a_run(scene_name):
+    scene = load_scene(scene_name)
+    for seed in range(counts(5, 1)):
+        ga = KBGA(scene, settings=KBGASettings(max_generations=counts(500, 2)), rng=seed)
+        ga.run()
+        # Each check is remembered: were one made twice, there would be more of them than segments.
+        assert ga.checks == (ga._problem.memory.segments["key"] != NOBODY).sum()
+
+
 class Listener:
-    """Hears of each check: where, and whether more was asked than if the segment is free."""
+    """Hears of each check: from where to where, and from which row of the obstacles' tree on."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.checks: list[tuple[tuple[float, ...], bool]] = []
+        self.rows: dict[tuple[float, ...], list[int]] = {}
         ask = evaluation.next_entry
 
         def listen(ax, ay, bx, by, tree, vertices, row):
-            if row == 0:
-                self.checks.append(((ax, ay, bx, by), False))
-            else:  # it has hit something, and is measured
-                self.checks[-1] = (self.checks[-1][0], True)
+            self.rows.setdefault((ax, ay, bx, by), []).append(row)
             return ask(ax, ay, bx, by, tree, vertices, row)
 
         monkeypatch.setattr(evaluation, "next_entry", listen)
@@ -89,21 +98,18 @@ class Listener:
 
 @pytest.mark.skipif(COMPILED, reason="compiled kernels can't be listened to")
 @pytest.mark.parametrize("seed", range(3))
-def test_the_counter_counts_every_check_and_none_is_made_twice(monkeypatch, seed):
-    # With room for all segments: the table of usual size gives up old ones for new ones.
-    monkeypatch.setattr(memory, "SLOTS", 2**20)
+def test_the_counter_counts_every_check_and_what_is_interrupted_goes_on(monkeypatch, seed):
     listener = Listener(monkeypatch)
     walls = [shapely.box(3, 0, 4, 8), shapely.box(6, 2, 7, 10)]
     # Start and goal off the lattice, so that a place is a gene.
     scene = make_scene("walls", shapely.box(0, 0, 10, 10), walls, ((1.01, 1.03), (9.07, 9.01)))
     ga = KBGA(scene, None, KBGASettings(population_size=12, resolution=20, max_generations=8), seed)
     ga.run()
-    assert ga.checks == len(listener.checks)
-    number = {check: k for k, check in enumerate(listener.checks)}
-    assert len(number) == len(listener.checks)
-    # One second look there is: known to be infeasible, a segment may have to be measured later.
-    looked_twice = [place for place, deep in number if deep and (place, False) in number]
-    assert all(number[place, False] < number[place, True] for place in looked_twice)
+    assert ga.checks == len(listener.rows)
+    for rows in listener.rows.values():
+        assert rows[0] == 0
+        # Another look begins where the last one ended, at the part that it met, or after its group.
+        assert all(before < after for before, after in pairwise(rows))
 
 
 # N_max

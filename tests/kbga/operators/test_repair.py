@@ -5,7 +5,15 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.kbga.laboratory import check, laboratory, random_scene, scene_of, with_paths
+from tests.kbga.laboratory import (
+    all_near_nodes,
+    check,
+    laboratory,
+    near_nodes,
+    random_scene,
+    scene_of,
+    with_paths,
+)
 from tests.suite.geometry.lattice import counts
 
 WALL = shapely.box(4, 2, 6, 8)
@@ -16,7 +24,6 @@ ENDS = ((0, 5), (10, 5))
 @given(st.integers(0, 2**32), st.sampled_from([3, 8, 16]))
 def test_one_node_comes_into_an_infeasible_segment_next_to_what_it_hits(seed, resolution):
     lab = laboratory(random_scene(np.random.default_rng(seed)), seed, resolution=resolution)
-    near, start = lab.problem.near.tolist(), lab.problem.near_start.tolist()
     for i in range(10):
         before = lab.genes(i)
         known = lab.population.nodes[i].copy()
@@ -30,7 +37,7 @@ def test_one_node_comes_into_an_infeasible_segment_next_to_what_it_hits(seed, re
         assert after[:k] + after[k + 1 :] == before
         assert known["depth"][k] > 0
         hits = known["hits"][k][: known["hit_count"][k]].tolist()
-        assert any(gene in near[start[g] : start[g + 1]] for g in hits)
+        assert any(gene in near_nodes(lab.problem, g) for g in hits)
     check(lab)
 
 
@@ -60,7 +67,7 @@ def test_no_node_is_inserted_into_a_path_of_the_longest_length():
 
 def test_a_node_of_the_path_is_not_inserted_again():
     lab = laboratory(scene_of(WALL, ends=ENDS), 0, repair_candidates=1000)
-    near = lab.problem.near.tolist()
+    near = all_near_nodes(lab.problem)
     places = [(float(n % 11), float(n // 11)) for n in near]
     with_paths(lab, places)
     assert not lab.is_feasible(0)
