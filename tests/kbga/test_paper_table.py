@@ -14,7 +14,7 @@ from kbga import KBGA, KBGASettings
 from kbga import operators as operators_package
 from tests.kbga.laboratory import scene_of
 
-SECTIONS = ["II-A", "II-B", "II-C", "II-D", "III"]
+SECTIONS = ["II-A", "II-B", "II-C", "II-D", "III", "V"]
 
 
 @dataclass
