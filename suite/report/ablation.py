@@ -37,9 +37,9 @@ REPORTED = {NOTHING: KBGA, SPECIALISED: PLAIN_GA, CLASSICAL: WITHOUT_CROSSOVER_A
 """What the paper switched off, and the names under which its figures stand."""
 
 PLAIN_GA_NOTE = (
-    "plain-ga is the paper's GA without specialised operators: mutation 0.5, which the paper found "
-    "to be best for it, and a patience of 200 generations. KBGA without its specialised operators "
-    "keeps its own mutation rate, 0.2, and its own patience, and so stops sooner."
+    "plain-ga is the paper's GA without specialised operators: with the mutation rate that was "
+    "found to be best for it, and a patience of 200 generations. KBGA without its specialised "
+    "operators keeps its own mutation rate, 0.2, and its own patience, and so stops sooner."
 )
 
 
