@@ -16,6 +16,11 @@ from suite.report.studies import MUTATION_RATE, best_value, sweep
 from suite.scenes.catalogue import load_scene
 from tests.kbga.laboratory import scene_of
 
+AS_PLAIN_GA = {
+    "mutation_probability": PlainGASettings().mutation_probability,
+    "initial_nodes": PlainGASettings().initial_nodes,
+    "stagnation": PlainGASettings().stagnation,
+}
 WITHOUT_KNOWLEDGE = {
     "repair_probability": 0.0,
     "deletion_probability": 0.0,
@@ -35,21 +40,13 @@ def run(planner: Planner, scene_name: str = "double_u", seed: int = 2) -> tuple[
 def test_its_mutation_rate_is_the_best_of_those_tried_as_in_the_papers_table_1():
     runs = pd.read_parquet(ROWS)
     assert len(runs) == 9 * 8 * 20
-    assert PlainGASettings().mutation_probability == best_value(
-        sweep(runs, MUTATION_RATE), "zigzag"
-    )
+    best = best_value(sweep(runs, MUTATION_RATE), "zigzag")
+    assert PlainGASettings().mutation_probability == best
 
 
 @pytest.mark.parametrize("scene_name", ["double_u", "zigzag"])
 def test_it_equals_kbga_with_the_knowledge_switched_off_bit_for_bit(scene_name):
-    kbga = KBGAPlanner(
-        KBGASettings(
-            mutation_probability=PlainGASettings().mutation_probability,
-            initial_nodes=8,
-            **WITHOUT_KNOWLEDGE,
-            stagnation=200,
-        )
-    )
+    kbga = KBGAPlanner(KBGASettings(**AS_PLAIN_GA, **WITHOUT_KNOWLEDGE))
     (ours, our_trace), (theirs, their_trace) = (
         run(p, scene_name) for p in (PlainGAPlanner(), kbga)
     )
@@ -63,16 +60,13 @@ def test_it_makes_no_use_of_knowledge():
     assert {name: getattr(settings, name) for name in WITHOUT_KNOWLEDGE} == WITHOUT_KNOWLEDGE
     # What only the specialised operators read changes nothing.
     other = KBGASettings(
-        mutation_probability=PlainGASettings().mutation_probability,
-        initial_nodes=8,
+        **AS_PLAIN_GA,
         **WITHOUT_KNOWLEDGE,
         repair_candidates=3,
         repair_limit=2.0,
         improvement_radius=2,
         rounds=1,
-        stagnation=200,
     )
-    rows = run(KBGAPlanner(other))[1].trace
     # But for the draws that a longer row of rounds would make: none, as no round has an effect.
     assert rows == run(PlainGAPlanner())[1].trace
 
