@@ -67,6 +67,7 @@ def test_it_makes_no_use_of_knowledge():
         improvement_radius=2,
         rounds=1,
     )
+    rows = run(KBGAPlanner(other))[1].trace
     # But for the draws that a longer row of rounds would make: none, as no round has an effect.
     assert rows == run(PlainGAPlanner())[1].trace
 
