@@ -6,8 +6,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from kbga.draws import LEAST_BLOCK, left_of, make_draws, refill
 from kbga.encoding import Population, empty_population, path_of
-from kbga.evolution import best_feasible, first_population, next_children
+from kbga.evolution import (
+    best_feasible,
+    first_population,
+    most_draws_of_a_pair,
+    most_draws_of_first_population,
+    next_children,
+)
 from kbga.measures import GenerationReport, measure
 from kbga.memory import with_room
 from kbga.operators.detour import make_scratch
@@ -84,6 +91,8 @@ class KBGA:
         self._scratch = make_scratch(max(8, int(settings.repair_candidates)))
         self._counter = np.zeros(1, np.int64)
         self._tally = empty_tally()
+        informed = round(settings.informed_share * settings.population_size)
+        self._draws = make_draws(rng, self._block_size(informed))
         self.generation = 0
         self.best_path: NDArray[np.float64] | None = None
         self.best_cost = float("inf")
@@ -96,15 +105,23 @@ class KBGA:
             query.start,
             query.goal,
             int(settings.initial_nodes),
-            round(settings.informed_share * settings.population_size),
+            informed,
             self._scratch,
             self._problem,
             self._rates,
-            rng,
+            self._draws,
             self._counter,
         )
         self._take_best(self.population, 0, len(self.population.chromosomes))
         self._take_lowest()
+
+    def _block_size(self, informed: int) -> int:
+        """Random numbers to draw at once: enough for the first population, and for some pairs."""
+        settings = self.settings
+        first = most_draws_of_first_population(
+            settings.population_size, settings.initial_nodes, informed, self._rates
+        )
+        return max(LEAST_BLOCK, first, 4 * most_draws_of_a_pair(self._rates))
 
     @property
     def checks(self) -> int:
@@ -132,6 +149,8 @@ class KBGA:
         made, count = 0, len(self.population.chromosomes)
         while made < count:
             before = made
+            if left_of(self._draws) < most_draws_of_a_pair(self._rates):
+                refill(self._draws, self._rng)
             made = next_children(
                 self.population,
                 self._children,
@@ -140,7 +159,7 @@ class KBGA:
                 self._scratch,
                 self._problem,
                 self._rates,
-                self._rng,
+                self._draws,
                 self._counter,
                 self._tally,
             )

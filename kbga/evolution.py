@@ -1,8 +1,8 @@
 """The generations of KBGA (paper II-D, Fig. 5): select, reproduce, replace with elitism."""
 
 import numpy as np
-from numba import njit
 
+from kbga.draws import Draws, draw, left_of
 from kbga.encoding import (
     GOAL,
     START,
@@ -26,7 +26,7 @@ from kbga.tuning import CROSSOVER, DELETION, IMPROVEMENT, MUTATION, REPAIR, Rate
 from suite.compiled import kernel
 
 
-@njit(cache=True)  # not a kernel: it must give the generator back
+@kernel
 def first_population(
     population: Population,
     start: np.ndarray,
@@ -36,7 +36,7 @@ def first_population(
     scratch: Scratch,
     problem: Problem,
     rates: Rates,
-    rng: np.random.Generator,
+    draws: Draws,
     counter: np.ndarray,
 ) -> None:
     """Fill a population with random chromosomes and evaluate them.
@@ -49,10 +49,10 @@ def first_population(
     count = problem.lattice.side * problem.lattice.side
     most = min(initial_nodes, nodes.shape[1] - 2, count)
     for i in range(nodes.shape[0]):
-        size = 1 + int(rng.random() * most) if most > 0 else 0
+        size = 1 + int(draw(draws) * most) if most > 0 else 0
         nodes[i, 0].gene, nodes[i, 0].x, nodes[i, 0].y = START, start[0], start[1]
         for k in range(1, size + 1):
-            gene = _new_gene(nodes, i, k - 1, i < informed, problem, rng)
+            gene = _new_gene(nodes, i, k - 1, i < informed, problem, draws)
             set_node(nodes, i, k, gene, problem.lattice)
         nodes[i, size + 1].gene = GOAL
         nodes[i, size + 1].x, nodes[i, size + 1].y = goal[0], goal[1]
@@ -69,7 +69,7 @@ def first_population(
                 problem,
                 rates.penalty,
                 rates.repair_candidates,
-                rng,
+                draws,
                 counter,
             )
 
@@ -81,28 +81,28 @@ def _new_gene(
     size: int,
     is_informed: bool,
     problem: Problem,
-    rng: np.random.Generator,
+    draws: Draws,
 ) -> int:
     """A lattice number that is none of the first ``size`` nodes of chromosome i.
 
     Of a node next to a random obstacle, if that is wanted and there is one left.
     """
     if is_informed:
-        group = int(rng.random() * problem.near_count.size)
+        group = int(draw(draws) * problem.near_count.size)
         around = near_count(group, problem)
-        offset = int(rng.random() * around)
+        offset = int(draw(draws) * around)
         for n in range(around):
             gene = near_node(group, (offset + n) % around, problem)
             if not contains(nodes, i, size, gene):
                 return gene
     count = problem.lattice.side * problem.lattice.side
-    gene = int(rng.random() * count)
+    gene = int(draw(draws) * count)
     while contains(nodes, i, size, gene):
         gene = (gene + 1) % count
     return gene
 
 
-@njit(cache=True)  # not a kernel: it must give the generator back
+@kernel
 def next_children(
     parents: Population,
     children: Population,
@@ -111,24 +111,25 @@ def next_children(
     scratch: Scratch,
     problem: Problem,
     rates: Rates,
-    rng: np.random.Generator,
+    draws: Draws,
     counter: np.ndarray,
     tally: np.ndarray,
 ) -> int:
     """Fill ``children`` with the offspring of ``parents``, two at a time, from place ``first`` on.
 
     It pauses after a feasible child that costs less than ``best``, so that a better path is known
-    when it is found; whoever calls it again for the rest gets the same children. The last of them
-    make room for the elite. Returns the place to go on from: the number of parents, at the end.
+    when it is found, and where too few random numbers are left; whoever calls it again for the rest
+    gets the same children. The last of them make room for the elite. Returns the place to go on
+    from: the number of parents, at the end.
     """
     count = parents.chromosomes.size
     c = first
-    while c < count:
-        i = tournament(parents.chromosomes, rates.tournament_size, rng)
-        j = tournament(parents.chromosomes, rates.tournament_size, rng)
+    while c < count and left_of(draws) >= most_draws_of_a_pair(rates):
+        i = tournament(parents.chromosomes, rates.tournament_size, draws)
+        j = tournament(parents.chromosomes, rates.tournament_size, draws)
         d = min(c + 1, count - 1)  # an odd population has a last child without a twin
-        crossed = rng.random() < rates.crossover and crossover(
-            parents, i, j, children, c, d, problem, rates.penalty, rng, counter
+        crossed = draw(draws) < rates.crossover and crossover(
+            parents, i, j, children, c, d, problem, rates.penalty, draws, counter
         )
         if crossed:
             known = min(parents.chromosomes[i].cost, parents.chromosomes[j].cost)
@@ -138,7 +139,7 @@ def next_children(
             copy_chromosome(parents, j, children, d)
             copy_chromosome(parents, i, children, c)
         for child in range(c, d + 1):
-            _transform(children, child, best, scratch, problem, rates, rng, counter, tally)
+            _transform(children, child, best, scratch, problem, rates, draws, counter, tally)
         found = best_feasible(children, c, d + 1)
         c = d + 1
         if found >= 0 and children.chromosomes[found].cost < best:
@@ -149,6 +150,22 @@ def next_children(
 
 
 @kernel
+def most_draws_of_a_pair(rates: Rates) -> int:
+    """Random numbers that two children take at most."""
+    parents = 2 * rates.tournament_size + 3  # whether they are crossed, and where
+    child = 3 + rates.rounds * 8  # mutation: whether, where, what; repair: 4; the others: 2 each
+    return parents + 2 * child
+
+
+def most_draws_of_first_population(
+    population_size: int, initial_nodes: int, informed: int, rates: Rates
+) -> int:
+    """Random numbers that the first population takes at most."""
+    each = 1 + initial_nodes
+    return population_size * each + informed * (2 * initial_nodes + 3 * rates.rounds)
+
+
+@kernel
 def _transform(
     children: Population,
     i: int,
@@ -156,7 +173,7 @@ def _transform(
     scratch: Scratch,
     problem: Problem,
     rates: Rates,
-    rng: np.random.Generator,
+    draws: Draws,
     counter: np.ndarray,
     tally: np.ndarray,
 ) -> None:
@@ -166,30 +183,44 @@ def _transform(
         makes a path longer, so it is lost on one that is too long already.
     """
     child = children.chromosomes[i]
-    if rng.random() < rates.mutation:
+    if draw(draws) < rates.mutation:
         known = child.cost
-        mutate(children, i, problem, rates.penalty, rng, counter)
+        mutate(children, i, problem, rates.penalty, draws, counter)
         note(tally, MUTATION, known, child.cost)
     for _ in range(rates.rounds):
         changed = False
         if (
             child.infeasible > 0
             and length_of(children, i) < rates.repair_limit * best
-            and rng.random() < rates.repair
+            and draw(draws) < rates.repair
         ):
             known = child.cost
             changed |= repair(
-                children, i, scratch, problem, rates.penalty, rates.repair_candidates, rng, counter
+                children,
+                i,
+                scratch,
+                problem,
+                rates.penalty,
+                rates.repair_candidates,
+                draws,
+                counter,
             )
             note(tally, REPAIR, known, child.cost)
-        if rng.random() < rates.deletion:
+        if draw(draws) < rates.deletion:
             known = child.cost
-            changed |= delete(children, i, scratch, problem, rates.penalty, rng, counter)
+            changed |= delete(children, i, scratch, problem, rates.penalty, draws, counter)
             note(tally, DELETION, known, child.cost)
-        if child.infeasible == 0 and rng.random() < rates.improvement:
+        if child.infeasible == 0 and draw(draws) < rates.improvement:
             known = child.cost
             changed |= improve(
-                children, i, scratch, problem, rates.penalty, rates.improvement_radius, rng, counter
+                children,
+                i,
+                scratch,
+                problem,
+                rates.penalty,
+                rates.improvement_radius,
+                draws,
+                counter,
             )
             note(tally, IMPROVEMENT, known, child.cost)
         if not changed:

@@ -2,16 +2,17 @@
 
 import numpy as np
 
+from kbga.draws import Draws, draw
 from kbga.encoding import Population, copy_chromosome
 from suite.compiled import kernel
 
 
 @kernel
-def tournament(chromosomes: np.ndarray, size: int, rng: np.random.Generator) -> int:
+def tournament(chromosomes: np.ndarray, size: int, draws: Draws) -> int:
     """Index of the cheapest of ``size`` chromosomes drawn at random."""
-    winner = int(rng.random() * chromosomes.size)
+    winner = int(draw(draws) * chromosomes.size)
     for _ in range(size - 1):
-        rival = int(rng.random() * chromosomes.size)
+        rival = int(draw(draws) * chromosomes.size)
         if chromosomes[rival].cost < chromosomes[winner].cost:
             winner = rival
     return winner

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from kbga.draws import Draws, draw
 from kbga.encoding import Population, close_columns, forget
 from kbga.evaluation import evaluate_segment, sum_up
 from kbga.problem import Problem
@@ -70,7 +71,7 @@ def crossover(
     d: int,
     problem: Problem,
     penalty: float,
-    rng: np.random.Generator,
+    draws: Draws,
     counter: np.ndarray,
 ) -> bool:
     """Make children c and d of parents i and j; whether it was done.
@@ -81,8 +82,8 @@ def crossover(
     size_i, size_j = parents.chromosomes[i].intermediate, parents.chromosomes[j].intermediate
     if size_i == 0 or size_j == 0:
         return False
-    cut = 1 + int(rng.random() * size_i)
-    other = 1 + int(rng.random() * size_j)
+    cut = 1 + int(draw(draws) * size_i)
+    other = 1 + int(draw(draws) * size_j)
     longest = parents.nodes.shape[1] - 2
     if cut + size_j - other > longest or other + size_i - cut > longest:
         return False

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from kbga.draws import Draws, draw
 from kbga.encoding import NEEDED, NEEDED_IF_FEASIBLE, Population, close_columns, distance, forget
 from kbga.evaluation import evaluate_within, is_free_segment, sum_up
 from kbga.operators.detour import Scratch
@@ -10,16 +11,19 @@ from suite.compiled import kernel
 
 
 @kernel
-def _random_node(nodes: np.ndarray, i: int, size: int, known: int, rng: np.random.Generator) -> int:
+def _random_node(nodes: np.ndarray, i: int, size: int, known: int, draws: Draws) -> int:
     """Column of a random intermediate node that is not ``known`` to be needed; 0 if none is."""
-    chosen = 0
     count = 0
     for k in range(1, size + 1):
-        if nodes[i, k].needed < known:
-            count += 1
-            if rng.random() * count < 1.0:
-                chosen = k
-    return chosen
+        count += nodes[i, k].needed < known
+    if count == 0:
+        return 0
+    left = int(draw(draws) * count)
+    k = 1
+    while nodes[i, k].needed >= known or left > 0:
+        left -= nodes[i, k].needed < known
+        k += 1
+    return k
 
 
 @kernel
@@ -29,7 +33,7 @@ def delete(
     scratch: Scratch,
     problem: Problem,
     penalty: float,
-    rng: np.random.Generator,
+    draws: Draws,
     counter: np.ndarray,
 ) -> bool:
     """Delete a random node of chromosome i if that is beneficial; whether it was done.
@@ -41,7 +45,7 @@ def delete(
     nodes, arrays, memory = population.nodes, problem.arrays, problem.memory
     feasible = population.chromosomes[i].infeasible == 0
     known = NEEDED_IF_FEASIBLE if feasible else NEEDED
-    k = _random_node(nodes, i, population.chromosomes[i].intermediate, known, rng)
+    k = _random_node(nodes, i, population.chromosomes[i].intermediate, known, draws)
     if k == 0:
         return False
     trial = scratch.nodes

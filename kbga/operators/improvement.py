@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from kbga.draws import Draws, draw
 from kbga.encoding import Population, contains, forget, set_node
 from kbga.evaluation import is_free_segment, sum_up
 from kbga.operators.detour import Scratch, bring_shortest_forward, list_candidate
@@ -78,16 +79,19 @@ def _is_crowded(nodes: np.ndarray, i: int, size: int, k: int, side: int) -> bool
 
 
 @kernel
-def _random_node(nodes: np.ndarray, i: int, size: int, rng: np.random.Generator) -> int:
+def _random_node(nodes: np.ndarray, i: int, size: int, draws: Draws) -> int:
     """Column of a random intermediate node that is not known to be settled; 0 if there is none."""
-    chosen = 0
     count = 0
     for k in range(1, size + 1):
-        if not nodes[i, k].settled:
-            count += 1
-            if rng.random() * count < 1.0:
-                chosen = k
-    return chosen
+        count += not nodes[i, k].settled
+    if count == 0:
+        return 0
+    left = int(draw(draws) * count)
+    k = 1
+    while nodes[i, k].settled or left > 0:
+        left -= not nodes[i, k].settled
+        k += 1
+    return k
 
 
 @kernel
@@ -98,7 +102,7 @@ def improve(
     problem: Problem,
     penalty: float,
     radius: int,
-    rng: np.random.Generator,
+    draws: Draws,
     counter: np.ndarray,
 ) -> bool:
     """Improve a random node of chromosome i if that is feasible; whether the node moved.
@@ -111,7 +115,7 @@ def improve(
     if population.chromosomes[i].infeasible > 0:
         return False
     nodes = population.nodes
-    k = _random_node(nodes, i, size, rng)
+    k = _random_node(nodes, i, size, draws)
     if k == 0:
         return False
     step = 1

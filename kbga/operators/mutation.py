@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from kbga.draws import Draws, draw
 from kbga.encoding import Population, contains, forget, set_node
 from kbga.evaluation import evaluate_segment, sum_up
 from kbga.problem import Problem
@@ -14,7 +15,7 @@ def mutate(
     i: int,
     problem: Problem,
     penalty: float,
-    rng: np.random.Generator,
+    draws: Draws,
     counter: np.ndarray,
 ) -> bool:
     """Replace a random node of chromosome i; whether it had one, and the lattice another.
@@ -26,8 +27,8 @@ def mutate(
     count = problem.lattice.side * problem.lattice.side
     if size == 0 or size == count:
         return False
-    k = 1 + int(rng.random() * size)
-    gene = int(rng.random() * count)
+    k = 1 + int(draw(draws) * size)
+    gene = int(draw(draws) * count)
     while contains(nodes, i, size, gene):
         gene = (gene + 1) % count
     set_node(nodes, i, k, gene, problem.lattice)

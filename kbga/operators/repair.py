@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from kbga.draws import Draws, draw
 from kbga.encoding import Population, contains, forget, open_column, set_node
 from kbga.evaluation import evaluate_within, sum_up
 from kbga.operators.detour import Scratch, bring_shortest_forward, list_candidate
@@ -12,11 +13,9 @@ from suite.compiled import kernel
 
 
 @kernel
-def _random_infeasible_segment(
-    nodes: np.ndarray, i: int, infeasible: int, rng: np.random.Generator
-) -> int:
+def _random_infeasible_segment(nodes: np.ndarray, i: int, infeasible: int, draws: Draws) -> int:
     """Column of one of the ``infeasible`` infeasible segments of chromosome i."""
-    wanted = int(rng.random() * infeasible)
+    wanted = int(draw(draws) * infeasible)
     k = 0
     while True:
         if nodes[i, k].depth > 0.0:
@@ -35,7 +34,7 @@ def _list_candidates(
     problem: Problem,
     group: int,
     most: int,
-    rng: np.random.Generator,
+    draws: Draws,
 ) -> int:
     """List up to ``most`` lattice nodes next to an obstacle group; how many there are.
 
@@ -45,7 +44,7 @@ def _list_candidates(
     tries = min(most, around)
     if tries == 0:
         return 0
-    offset = int(rng.random() * around)
+    offset = int(draw(draws) * around)
     count = 0
     for attempt in range(tries):
         gene = near_node(group, (offset + attempt * around // tries) % around, problem)
@@ -87,7 +86,7 @@ def repair(
     problem: Problem,
     penalty: float,
     candidates: int,
-    rng: np.random.Generator,
+    draws: Draws,
     counter: np.ndarray,
 ) -> bool:
     """Repair one random infeasible segment of chromosome i; whether a node was inserted.
@@ -100,13 +99,13 @@ def repair(
     size, infeasible = population.chromosomes[i].intermediate, population.chromosomes[i].infeasible
     if infeasible == 0 or size + 2 >= nodes.shape[1]:
         return False
-    k = _random_infeasible_segment(nodes, i, infeasible, rng)
+    k = _random_infeasible_segment(nodes, i, infeasible, draws)
     if nodes[i, k].hit_count == 0:
         return False
-    group = nodes[i, k].hits[int(rng.random() * nodes[i, k].hit_count)]
+    group = nodes[i, k].hits[int(draw(draws) * nodes[i, k].hit_count)]
     scratch.nodes[0, 0] = nodes[i, k]
     scratch.nodes[0, 2] = nodes[i, k + 1]
-    count = _list_candidates(nodes, i, size, scratch, problem, group, candidates, rng)
+    count = _list_candidates(nodes, i, size, scratch, problem, group, candidates, draws)
     if not _try_candidates(scratch, count, problem, penalty, counter):
         return False
     open_column(population, i, k + 1)

@@ -11,6 +11,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from kbga.draws import Draws, left_of, make_draws, refill
 from kbga.encoding import (
     GOAL,
     NEEDED,
@@ -34,6 +35,9 @@ from kbga.tuning import Rates, empty_tally, rates_of
 from suite.geometry.kernels import first_collision
 from suite.scene import Query, Scene, make_scene
 from tests.suite.geometry.lattice import Rng, random_solid
+
+BLOCK = 20_000
+"""Random numbers that are at hand for whatever is done at once."""
 
 ROOM = shapely.box(0, 0, 10, 10)
 ENDS = ((1.0, 1.0), (9.0, 9.0))
@@ -65,14 +69,22 @@ class Laboratory:
     problem: Problem
     rates: Rates
     rng: Rng
+    draws: Draws
     population: Population
     children: Population
     scratch: Scratch
     counter: NDArray[np.int64]
     tally: NDArray[np.int64]
 
+    def fresh_draws(self) -> Draws:
+        """Random numbers, enough for anything that is done at once."""
+        if left_of(self.draws) < len(self.draws.values) // 2:
+            refill(self.draws, self.rng)
+        return self.draws
+
     def mutate(self, i: int) -> bool:
-        return mutate(self.population, i, self.problem, self.rates.penalty, self.rng, self.counter)
+        draws = self.fresh_draws()
+        return mutate(self.population, i, self.problem, self.rates.penalty, draws, self.counter)
 
     def repair(self, i: int) -> bool:
         return repair(
@@ -82,7 +94,7 @@ class Laboratory:
             self.problem,
             self.rates.penalty,
             self.rates.repair_candidates,
-            self.rng,
+            self.fresh_draws(),
             self.counter,
         )
 
@@ -93,7 +105,7 @@ class Laboratory:
             self.scratch,
             self.problem,
             self.rates.penalty,
-            self.rng,
+            self.fresh_draws(),
             self.counter,
         )
 
@@ -105,7 +117,7 @@ class Laboratory:
             self.problem,
             self.rates.penalty,
             self.rates.improvement_radius,
-            self.rng,
+            self.fresh_draws(),
             self.counter,
         )
 
@@ -120,7 +132,7 @@ class Laboratory:
             d,
             self.problem,
             self.rates.penalty,
-            self.rng,
+            self.fresh_draws(),
             self.counter,
         )
 
@@ -133,7 +145,7 @@ class Laboratory:
             self.scratch,
             self.problem,
             self.rates,
-            self.rng,
+            self.fresh_draws(),
             self.counter,
             self.tally,
         )
@@ -172,12 +184,14 @@ def laboratory(scene: Scene, seed: int = 0, **settings: float) -> Laboratory:
     chosen = KBGASettings(**{"resolution": 10, "population_size": 10, **settings})
     rates = rates_of(chosen)
     query = scene.query()
+    rng = np.random.default_rng(seed)
     made = Laboratory(
         query=query,
         settings=chosen,
         problem=make_problem(scene.arrangement, scene.bounds, chosen.resolution),
         rates=rates,
-        rng=np.random.default_rng(seed),
+        rng=rng,
+        draws=make_draws(rng, 2 * BLOCK),
         population=empty_population(chosen.population_size, chosen.max_nodes),
         children=empty_population(chosen.population_size, chosen.max_nodes),
         scratch=make_scratch(max(8, chosen.repair_candidates)),
@@ -193,7 +207,7 @@ def laboratory(scene: Scene, seed: int = 0, **settings: float) -> Laboratory:
         made.scratch,
         made.problem,
         rates,
-        made.rng,
+        made.fresh_draws(),
         made.counter,
     )
     return made

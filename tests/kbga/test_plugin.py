@@ -91,11 +91,11 @@ def test_a_budget_of_generations_is_kept_exactly(generations):
 
 def test_a_budget_of_checks_ends_the_run_after_the_generation_that_passed_it():
     recorder = Recorder()
-    budget = Budget(checks=150)
+    budget = Budget(checks=100)
     made = plan(CLOSED, budget, recorder)
     *before, last = [row["checks"] for row in recorder.trace]
-    assert last >= 150
-    assert all(checks < 150 for checks in before)
+    assert last >= 100
+    assert all(checks < 100 for checks in before)
     assert made.checks == last
 
 

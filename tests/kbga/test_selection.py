@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from kbga.draws import make_draws
 from kbga.encoding import CHROMOSOME, Population, empty_population
 from kbga.selection import keep_elite, tournament
 from tests.suite.geometry.lattice import counts
@@ -20,8 +21,8 @@ def with_costs(costs: list[float]) -> Population:
 def winners(size: int, count: int = 10) -> np.ndarray:
     chromosomes = np.zeros(count, CHROMOSOME).view(np.recarray)
     chromosomes["cost"] = np.arange(count)
-    rng = np.random.default_rng(1)
-    return np.array([tournament(chromosomes, size, rng) for _ in range(DRAWS)])
+    draws = make_draws(np.random.default_rng(1), size * DRAWS)
+    return np.array([tournament(chromosomes, size, draws) for _ in range(DRAWS)])
 
 
 def test_a_tournament_of_one_draws_anybody_alike():
