@@ -194,12 +194,16 @@ def _growth(measured: Measured) -> Iterator[Row]:
     remark = f"{few * 1e6:.0f} and {many * 1e6:.0f} ns a check" if few and many else ""
     scene = "3,000 obstacles over 20"
     yield Row("growth of a collision check", scene, "times", "<=", CHECK_GROWTH, ratio, remark)
-    few, many = (
-        measured.median_s("whole run among scattered", planner="kbga", scene=f"scattered_{n}")
-        for n in (20, 3000)
-    )
+    measure = "whole run among scattered"
+    scenes = [f"scattered_{n}" for n in (20, 3000)]
+    few, many = (measured.median_s(measure, planner="kbga", scene=s) for s in scenes)
     ratio = many / few if few and many else None
     remark = f"{_ms(few)} and {_ms(many)} ms" if few and many else ""
+    infos = [measured.info(measure, planner="kbga", scene=s) for s in scenes]
+    for count in ("generations", "checks"):
+        counts = [info.get(count) for info in infos]
+        if None not in counts:
+            remark += f"; {counts[0]:,.0f} and {counts[1]:,.0f} {count}"
     yield Row("growth of a whole run", scene, "times", "<=", RUN_GROWTH, ratio, remark)
 
 
@@ -227,7 +231,7 @@ def _memory(measured: Measured) -> Iterator[Row]:
     made = {s: count for s, count in counts.items() if count is not None}
     row = _everywhere("allocations of compiled code per generation, most", "", "<=", 0.0, made)
     if row.reached == "no":
-        remark = "numba wraps the random generator each time that a kernel is called with it"
+        remark = "of compiled code, also where Python calls it"
         row = row._replace(remark=f"{row.remark}; {remark}")
     yield row
 

@@ -32,18 +32,25 @@ def test_whole_run_among_scattered_obstacles(benchmark, scene_name):
 def _measure_whole_runs(benchmark, measure, planner_name, scene_name):
     runner = planner(planner_name)
     seeds = count()
-    best_s = []
+    best_s, generations, checks = [], [], []
 
     def run():
         recorder = Recorder()
-        plan(runner, scene_name, next(seeds), recorder=recorder)
+        made = plan(runner, scene_name, next(seeds), recorder=recorder)
+        generations.append(made.generations)
+        checks.append(made.checks)
         best_s.extend(i.wall_s for i in recorder.improvements[-1:])
 
     benchmark.pedantic(run, rounds=SEEDS, warmup_rounds=1)
     benchmark.extra_info.update(
         measure=measure, scene=scene_name, planner=planner_name,
         best_s=median(best_s) if best_s else None,
+        generations=_median(generations), checks=_median(checks),
     )  # fmt: skip
+
+
+def _median(counts):
+    return None if None in counts else median(counts)
 
 
 @pytest.mark.parametrize("scene_name", SCENES)
