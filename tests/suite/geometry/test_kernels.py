@@ -9,7 +9,16 @@ from shapely.affinity import rotate
 from shapely.geometry import Point, Polygon, box
 
 from suite.geometry.arrangement import Arrangement, arrange
-from suite.geometry.kernels import AFTER, GROUP, first_collision, next_entry, segment_enters
+from suite.geometry.kernels import (
+    AFTER,
+    GROUP,
+    _segment_enters_part_exactly,
+    first_collision,
+    next_entry,
+    segment_enters,
+    segment_enters_part,
+)
+from suite.geometry.predicates import orientation
 from tests.suite.geometry.lattice import (
     counts,
     enters,
@@ -88,6 +97,71 @@ def test_kernel_and_shapely_agree_on_the_half_lattice(seed, halves):
     segment = np.array([halves], dtype=float) / 2
     arrangement = arrange(room, obstacles)
     assert disagreements(arrangement, arrangement.solid, segment) == []
+
+
+# The quick test of one part against the exact one
+
+
+def convex_part(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Vertices of the convex hull, counter-clockwise by exact signs; none if it has no area."""
+    hull: list[tuple[float, float]] = []
+    for chain in (sorted(set(points)), sorted(set(points), reverse=True)):
+        begin = len(hull)
+        for p in chain:
+            while len(hull) > begin + 1 and orientation(*hull[-2], *hull[-1], *p) <= 0:
+                hull.pop()
+            hull.append(p)
+        hull.pop()
+    return hull if len(hull) > 2 else []
+
+
+def assert_quick_is_exact(part, seams, ends):
+    vertices = np.array([(x, y, s) for (x, y), s in zip(part, seams, strict=False)], dtype=float)
+    for ax, ay, bx, by in (ends, (*ends[2:], *ends[:2])):
+        if (ax, ay) != (bx, by):
+            asked = ax, ay, bx, by, vertices, 0, len(part) - 1
+            assert segment_enters_part(*asked) == _segment_enters_part_exactly(*asked)
+
+
+SEAMS = st.lists(st.booleans(), min_size=9, max_size=9)
+LATTICE = st.integers(0, 4).map(float)
+
+
+@settings(max_examples=counts(800, 200))
+@given(
+    st.lists(st.tuples(LATTICE, LATTICE), min_size=3, max_size=9), SEAMS, st.tuples(*[LATTICE] * 4)
+)
+def test_the_quick_test_of_a_part_is_exact_on_the_lattice(points, seams, ends):
+    part = convex_part(points)
+    if part:
+        assert_quick_is_exact(part, seams, ends)
+
+
+def nudged(value: float, ulps: int) -> float:
+    for _ in range(abs(ulps)):
+        value = float(np.nextafter(value, np.inf if ulps > 0 else -np.inf))
+    return value
+
+
+ULPS = st.integers(-1, 1)
+
+
+@settings(max_examples=counts(800, 200))
+@given(
+    st.tuples(*[st.floats(-1.0, 1.0)] * 4),
+    st.lists(st.tuples(st.floats(-1.0, 2.0), ULPS, ULPS), min_size=2, max_size=6),
+    st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)),
+    SEAMS,
+    st.sampled_from([1e-6, 1.0, 1e9]),
+)
+def test_the_quick_test_of_a_part_is_exact_where_vertices_lie_on_the_line_up_to_an_ulp(
+    ends, on_line, apex, seams, scale
+):
+    ax, ay, bx, by = (scale * v for v in ends)
+    points = [(nudged(ax + t * (bx - ax), i), nudged(ay + t * (by - ay), j)) for t, i, j in on_line]
+    part = convex_part([*points, (scale * apex[0], scale * apex[1])])
+    if part:
+        assert_quick_is_exact(part, seams, (ax, ay, bx, by))
 
 
 def test_direction_does_not_matter():
