@@ -138,6 +138,18 @@ def test_a_crowded_table_grows_and_forgets_nothing():
     assert bench.counter[0] == checks == known, "nothing was checked again"
 
 
+def test_what_is_measured_in_part_goes_on_in_the_larger_table():
+    slabs = [shapely.box(x, 0, x + 1, 9) for x in (2, 4, 6)]
+    bench = Bench(arrange(shapely.box(0, 0, 10, 10), slabs).arrays)
+    bench.put(BLOCKED)
+    assert not bench.stays_below(8.0 + 9.0)
+    bench.memory = with_room(bench.memory, FIRST_SLOTS)
+    assert -bench.known_depth() == 16.0
+    assert bench.evaluate() == 24.0
+    assert sorted(bench.nodes["hits"][0, 0, :3].tolist()) == [0, 1, 2]
+    assert bench.counter[0] == 1
+
+
 def test_the_largest_table_stays_as_it_is():
     largest = empty_memory(MOST_SLOTS)
     assert with_room(largest, 10**9) is largest
