@@ -62,6 +62,8 @@ II-B   Fig. 3(b): a shorter shift that is not enough    kbga.evaluation.escape_d
        to get away does not count
 II-B   Fig. 3(c): where the obstacle is joined to the   kbga.evaluation.escape_distance
        wall is a dead end; only the other side counts
+ours   a joint ahead of the segment or behind it is     kbga.evaluation.escape_distance
+       no dead end
 ours   dead ends on both sides: both ways together,     kbga.evaluation.escape_distance
        deeper than either
 II-B   Fig. 3(d): the depths in several obstacles add   kbga.evaluation.evaluate_segment

@@ -19,6 +19,7 @@ from kbga.measures import GenerationReport, measure
 from kbga.memory import with_room
 from kbga.operators.detour import make_scratch
 from kbga.problem import make_problem
+from kbga.selection import keep_elite
 from kbga.settings import KBGASettings
 from kbga.trace import trace_of
 from kbga.tuning import empty_tally, rates_of, tuned
@@ -167,6 +168,7 @@ class KBGA:
                 improved = True
                 if on_improvement is not None:
                     on_improvement(self)
+        keep_elite(self.population, self._children)
         self.population, self._children = self._children, self.population
         self._problem = self._problem._replace(memory=with_room(self._problem.memory, self.checks))
         self._take_lowest()

@@ -74,23 +74,35 @@ def _reach(
 
 @inlined_kernel
 def _dead_ends(
-    ax: float, ay: float, ux: float, uy: float, contacts: np.ndarray, first: int, last: int
+    ax: float,
+    ay: float,
+    ux: float,
+    uy: float,
+    span: float,
+    contacts: np.ndarray,
+    first: int,
+    last: int,
 ) -> tuple[bool, bool, bool]:
-    """On which sides of the line from a along u a group is joined to the border: left, right, on.
+    """Where a group is joined to the border: left of a segment's line, right, along the segment.
 
-    A joint that lies on both sides is ahead of the segment or behind it, and in no shift's way.
+    A joint that the line crosses lies ahead of the segment or behind it, and in no shift's way. So
+    does one on the line that the segment does not run along. (One that the segment itself crosses
+    leads into the frame, which has a depth of its own.)
     """
     left = False
     right = False
-    on = False
+    along = False
     for e in range(first, last):
-        h = (contacts[e, 1] - ay) * ux - (contacts[e, 0] - ax) * uy
-        g = (contacts[e, 3] - ay) * ux - (contacts[e, 2] - ax) * uy
+        px, py = contacts[e, 0] - ax, contacts[e, 1] - ay
+        qx, qy = contacts[e, 2] - ax, contacts[e, 3] - ay
+        h, g = py * ux - px * uy, qy * ux - qx * uy
         low, high = min(h, g), max(h, g)
         left |= low >= -ON_LINE and high > ON_LINE
         right |= high <= ON_LINE and low < -ON_LINE
-        on |= low >= -ON_LINE and high <= ON_LINE
-    return left, right, on
+        if low >= -ON_LINE and high <= ON_LINE:
+            t, w = px * ux + py * uy, qx * ux + qy * uy
+            along |= max(t, w) > ON_LINE and min(t, w) < span - ON_LINE
+    return left, right, along
 
 
 @kernel
@@ -118,7 +130,7 @@ def escape_distance(
     left, right = _reach(ax, ay, ux, uy, span, arrays.boundary, first, last)
     first = int(arrays.groups[group, FIRST_CONTACT])
     last = int(arrays.groups[group, LAST_CONTACT])
-    dead_left, dead_right, slit = _dead_ends(ax, ay, ux, uy, arrays.contacts, first, last)
+    dead_left, dead_right, slit = _dead_ends(ax, ay, ux, uy, span, arrays.contacts, first, last)
     is_frame = group == arrays.groups.shape[0] - 1
     if is_frame or (dead_left and dead_right):
         return max(LEAST_DEPTH, left - right)

@@ -21,7 +21,7 @@ from kbga.operators.improvement import improve
 from kbga.operators.mutation import mutate
 from kbga.operators.repair import repair
 from kbga.problem import Problem, near_count, near_node
-from kbga.selection import keep_elite, tournament
+from kbga.selection import tournament
 from kbga.tuning import CROSSOVER, DELETION, IMPROVEMENT, MUTATION, REPAIR, Rates, note
 from suite.compiled import kernel
 
@@ -88,13 +88,17 @@ def _new_gene(
     Of a node next to a random obstacle, if that is wanted and there is one left.
     """
     if is_informed:
-        group = int(draw(draws) * problem.near_count.size)
-        around = near_count(group, problem)
-        offset = int(draw(draws) * around)
-        for n in range(around):
-            gene = near_node(group, (offset + n) % around, problem)
-            if not contains(nodes, i, size, gene):
-                return gene
+        groups = problem.near_count.size
+        drawn = int(draw(draws) * groups)
+        where = draw(draws)
+        for g in range(groups):  # the next one where the frame is drawn and has no corner
+            group = (drawn + g) % groups
+            around = near_count(group, problem)
+            offset = int(where * around)
+            for n in range(around):
+                gene = near_node(group, (offset + n) % around, problem)
+                if not contains(nodes, i, size, gene):
+                    return gene
     count = problem.lattice.side * problem.lattice.side
     gene = int(draw(draws) * count)
     while contains(nodes, i, size, gene):
@@ -118,9 +122,9 @@ def next_children(
     """Fill ``children`` with the offspring of ``parents``, two at a time, from place ``first`` on.
 
     It pauses after a feasible child that costs less than ``best``, so that a better path is known
-    when it is found, and where too few random numbers are left; whoever calls it again for the rest
-    gets the same children. The last of them make room for the elite. Returns the place to go on
-    from: the number of parents, at the end.
+    when it is found, to the caller and to the repairs that follow; and where too few random numbers
+    are left. Called again with the new best, it goes on. Returns the place to go on from: the
+    number of parents, at the end.
     """
     count = parents.chromosomes.size
     c = first
@@ -144,8 +148,6 @@ def next_children(
         c = d + 1
         if found >= 0 and children.chromosomes[found].cost < best:
             break
-    if c == count:
-        keep_elite(parents, children)
     return c
 
 
@@ -177,54 +179,57 @@ def _transform(
     counter: np.ndarray,
     tally: np.ndarray,
 ) -> None:
-    """Apply mutation and the specialised operators to a child, by probability and heuristic.
+    """Apply mutation, then rounds of the specialised operators, to a child."""
+    if draw(draws) < rates.mutation:
+        known = children.chromosomes[i].cost
+        mutate(children, i, problem, rates.penalty, draws, counter)
+        note(tally, MUTATION, known, children.chromosomes[i].cost)
+    for _ in range(rates.rounds):
+        if not _do_round(children, i, best, scratch, problem, rates, draws, counter, tally):
+            break
+
+
+@kernel
+def _do_round(
+    children: Population,
+    i: int,
+    best: float,
+    scratch: Scratch,
+    problem: Problem,
+    rates: Rates,
+    draws: Draws,
+    counter: np.ndarray,
+    tally: np.ndarray,
+) -> bool:
+    """Repair, deletion and improvement, by probability and heuristic; whether any had an effect.
 
     best : length of the best feasible path so far, metres; infinite before there is one. A repair
         makes a path longer, so it is lost on one that is too long already.
     """
     child = children.chromosomes[i]
-    if draw(draws) < rates.mutation:
+    penalty = rates.penalty
+    changed = False
+    if (
+        child.infeasible > 0
+        and length_of(children, i) < rates.repair_limit * best
+        and draw(draws) < rates.repair
+    ):
         known = child.cost
-        mutate(children, i, problem, rates.penalty, draws, counter)
-        note(tally, MUTATION, known, child.cost)
-    for _ in range(rates.rounds):
-        changed = False
-        if (
-            child.infeasible > 0
-            and length_of(children, i) < rates.repair_limit * best
-            and draw(draws) < rates.repair
-        ):
-            known = child.cost
-            changed |= repair(
-                children,
-                i,
-                scratch,
-                problem,
-                rates.penalty,
-                rates.repair_candidates,
-                draws,
-                counter,
-            )
-            note(tally, REPAIR, known, child.cost)
-        if draw(draws) < rates.deletion:
-            known = child.cost
-            changed |= delete(children, i, scratch, problem, rates.penalty, draws, counter)
-            note(tally, DELETION, known, child.cost)
-        if child.infeasible == 0 and draw(draws) < rates.improvement:
-            known = child.cost
-            changed |= improve(
-                children,
-                i,
-                scratch,
-                problem,
-                rates.penalty,
-                rates.improvement_radius,
-                draws,
-                counter,
-            )
-            note(tally, IMPROVEMENT, known, child.cost)
-        if not changed:
-            break
+        changed |= repair(
+            children, i, scratch, problem, penalty, rates.repair_candidates, draws, counter
+        )
+        note(tally, REPAIR, known, child.cost)
+    if draw(draws) < rates.deletion:
+        known = child.cost
+        changed |= delete(children, i, scratch, problem, penalty, draws, counter)
+        note(tally, DELETION, known, child.cost)
+    if child.infeasible == 0 and draw(draws) < rates.improvement:
+        known = child.cost
+        changed |= improve(
+            children, i, scratch, problem, penalty, rates.improvement_radius, draws, counter
+        )
+        note(tally, IMPROVEMENT, known, child.cost)
+    return changed
 
 
 @kernel

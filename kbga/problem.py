@@ -99,8 +99,8 @@ def near_count(group: int, problem: Problem) -> int:
     """How many free nodes lie next to the corners of an obstacle group; finds them if need be.
 
     The paper's grids neighbouring an obstacle (II-C). Of each corner, those are the crossings of
-    the lattice cell that holds it; where all of them are closed, of the cells around it too.
-    Shortest paths bend at corners only.
+    the lattice cell that holds it; where they are closed or those of another corner already, of the
+    cells around it too. Shortest paths bend at corners only.
     """
     if problem.near_count[group] == NOT_LOOKED_FOR:
         first = MOST_NEAR * problem.near_start[group]

@@ -80,17 +80,20 @@ def tuned(rates: Rates, tally: NDArray[np.int64], adaptation_rate: float) -> Rat
     Parameters
     ----------
     rates : Rates
-        An operator of probability 0 is switched off, and stays so.
+        An operator of probability 0 is switched off, and stays so. One that was not fired, as no
+        chromosome called for it, keeps its probability.
     tally : (5, 2) int64
         Of the generation that has ended.
     adaptation_rate : float, in [0, 1]
         How much of the way to its target a probability goes at once.
     """
-    earned = tally[:, HELPED] / np.maximum(tally[:, FIRED], 1)
+    fired = tally[:, FIRED]
+    earned = tally[:, HELPED] / np.maximum(fired, 1)
     best = earned.max()
     if best == 0.0:
         return rates
     target = FLOOR + (CEILING - FLOOR) * earned / best
     now = np.array(rates[: len(target)])
-    moved = np.where(now > 0.0, now + adaptation_rate * (target - now), 0.0)
+    judged = (now > 0.0) & (fired > 0)
+    moved = np.where(judged, now + adaptation_rate * (target - now), now)
     return rates._replace(**dict(zip(Rates._fields, moved.tolist(), strict=False)))

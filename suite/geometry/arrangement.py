@@ -6,7 +6,7 @@ cut into convex parts (constrained Delaunay, then Hertel and Mehlhorn 1983), and
 share is a seam. Metres, x right, y up.
 """
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
@@ -383,19 +383,45 @@ def _boundaries_and_contacts(
 ) -> tuple[list[list[Stretch]], list[list[Stretch]]]:
     """For each group its edges towards anything else, and where it touches the frame."""
     boundary: list[list[Stretch]] = [[] for _ in range(frame + 1)]
-    contacts: list[list[Stretch]] = [[] for _ in range(frame + 1)]
+    shared: list[list[Stretch]] = [[] for _ in range(frame + 1)]
+    points: list[list[Stretch]] = [[] for _ in range(frame + 1)]
     for edge, group in edges.group.items():
         other = edges.group.get(edge[::-1])
         if other != group and not edges.is_outer(edge):
             boundary[group].append(edge)
         if other == frame and group != frame:
-            contacts[group].append(edge)
+            shared[group].append(edge)
+    along = [{v for edge in stretches for v in edge} for stretches in shared]
     for v, incident in edges.parts_at.items():
         groups = {group_of[i] for i in incident}
         if frame in groups:
             for group in groups - {frame}:
-                contacts[group].append((v, v))
+                if v not in along[group]:
+                    points[group].append((v, v))
+    contacts = [_whole_stretches(s) + p for s, p in zip(shared, points, strict=True)]
     return boundary, contacts
+
+
+def _whole_stretches(shared: Sequence[Stretch]) -> list[Stretch]:
+    """Edges in a row, straight but for the rounding of their vertices, joined to one stretch.
+
+    However an obstacle's side along the border is cut up, it is one contact.
+    """
+    leaving = Counter(a for a, _ in shared)
+    forks = [edge for edge in shared if leaving[edge[0]] > 1]
+    end = {a: b for a, b in shared if leaving[a] == 1}
+    for a in list(end):
+        while a in end and end[a] in end and _is_straight(a, end[a], end[end[a]]):
+            end[a] = end.pop(end[a])
+    return [*forks, *end.items()]
+
+
+def _is_straight(a: Point, b: Point, c: Point) -> bool:
+    """Whether b lies between a and c, or as far beside as snapping to the grid may move it."""
+    (ux, uy), (wx, wy) = (b[0] - a[0], b[1] - a[1]), (c[0] - a[0], c[1] - a[1])
+    length = float(np.hypot(wx, wy))
+    beside, along = abs(ux * wy - uy * wx), ux * wx + uy * wy
+    return beside <= 2.0 * GRID * length and 0.0 < along < length**2
 
 
 def _pinches(

@@ -30,7 +30,8 @@ class ObstacleArrays(NamedTuple):
         after the group; FIRST_EDGE to LAST_EDGE, rows of ``boundary``; FIRST_CONTACT to
         LAST_CONTACT, rows of ``contacts``.
     boundary : x, y, x, y of the edges between a group and anything else.
-    contacts : x, y, x, y of the stretches (or points) in which a group touches the frame.
+    contacts : x, y, x, y of the stretches in which a group touches the frame, each in one piece,
+        and of the points in which it does no more than that.
     pinches : x, y of a point where free space is cut by parts that meet in a point only; rows
         FIRST_WAY to LAST_WAY in ``ways``.
     ways : x, y, a direction into each part that meets a pinch point.

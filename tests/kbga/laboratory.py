@@ -30,6 +30,7 @@ from kbga.operators.improvement import improve
 from kbga.operators.mutation import mutate
 from kbga.operators.repair import repair
 from kbga.problem import Problem, make_problem, near_count, near_node
+from kbga.selection import keep_elite
 from kbga.settings import KBGASettings
 from kbga.tuning import Rates, empty_tally, rates_of
 from suite.geometry.kernels import first_collision
@@ -137,11 +138,23 @@ class Laboratory:
         )
 
     def next_generation(self) -> None:
-        done = next_children(
+        """As :meth:`kbga.algorithm.KBGA.step` does it."""
+        count = len(self.population.chromosomes)
+        best = self.best_feasible_cost(self.population, 0, count)
+        made = 0
+        while made < count:
+            before, made = made, self.make_children(made, best)
+            best = min(best, self.best_feasible_cost(self.children, before, made))
+        keep_elite(self.population, self.children)
+        self.population, self.children = self.children, self.population
+
+    def make_children(self, first: int, best: float) -> int:
+        """Children from place ``first`` on, until one is feasible and costs less than ``best``."""
+        return next_children(
             self.population,
             self.children,
-            0,
-            -1.0,  # nothing costs less: no pause
+            first,
+            best,
             self.scratch,
             self.problem,
             self.rates,
@@ -149,8 +162,10 @@ class Laboratory:
             self.counter,
             self.tally,
         )
-        assert done == len(self.population.chromosomes)
-        self.population, self.children = self.children, self.population
+
+    def best_feasible_cost(self, population: Population, first: int, last: int) -> float:
+        best = best_feasible(population, first, last)
+        return float(population.chromosomes["cost"][best]) if best >= 0 else np.inf
 
     def genes(self, i: int) -> list[int]:
         """Intermediate nodes of chromosome i."""

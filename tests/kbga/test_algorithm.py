@@ -1,9 +1,12 @@
 """KBGA as a whole: reproducible, honest about what it found, and right by kernel and referee."""
 
+import gc
 import hashlib
 import os
 import subprocess
 import sys
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +19,7 @@ from numba import config
 from kbga.algorithm import KBGA
 from kbga.evolution import next_children
 from kbga.settings import KBGASettings
+from kbga.tuning import rates_of
 from suite.exact import shortest_path
 from suite.geometry.kernels import first_collision
 from suite.referee import judge
@@ -233,6 +237,65 @@ def test_the_best_is_remembered_with_its_generation():
     assert np.hypot(*np.diff(ga.best_path, axis=0).T).sum() == pytest.approx(best)
 
 
+@settings(max_examples=counts(40, 4))
+@given(st.integers(0, 2**32), st.sampled_from([2, 3, 12]), st.sampled_from([0.0, 0.1, 100.0]))
+def test_it_tells_of_each_better_path_once_and_last_of_the_best(seed, population_size, penalty):
+    told: list[tuple[float, int, int]] = []
+    chosen = KBGASettings(
+        population_size=population_size, resolution=10, penalty=penalty, max_generations=12
+    )
+    ga = KBGA(random_scene(np.random.default_rng(seed)), settings=chosen, rng=seed)
+    if ga.best_path is not None:
+        assert ga.generation_of_best == 0
+    now = ga.generation
+
+    def improved(ga: KBGA) -> None:
+        assert ga.best_path is not None
+        assert ga.generation_of_best == ga.generation
+        assert ga.generation in (now, now + 1)
+        told.append((ga.best_cost, ga.generation, ga.checks))
+
+    def follow(ga: KBGA, better: bool) -> None:
+        nonlocal now
+        now = ga.generation
+        assert better == (len(told) > 0 and told[-1][1] == now)
+
+    ga.run(follow, improved)
+    costs, generations, checks = zip(*told, strict=True) if told else ((), (), ())
+    assert all(before > after for before, after in pairwise(costs))
+    assert list(generations) == sorted(generations)
+    assert list(checks) == sorted(checks)
+    assert (costs[-1] if told else np.inf) == ga.best_cost
+    assert (generations[-1] if told else 0) == ga.generation_of_best
+
+
+def test_a_feasible_child_is_known_though_the_elite_takes_its_place():
+    # Without a penalty a path through the wall costs less: the feasible child is the worst.
+    kept = 0
+    for seed in range(40):
+        ga = KBGA(WALL, None, KBGASettings(population_size=2, resolution=10, penalty=0.0), seed)
+        while ga.best_path is None and ga.generation < 10:
+            ga.step()
+        gone = (ga.population.chromosomes["infeasible"] > 0).all()
+        kept += ga.best_path is not None and gone
+    assert kept > 0
+
+
+@pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
+def test_generations_give_the_generator_and_the_tables_back():
+    rng = np.random.default_rng(0)
+    ga = KBGA(WALL, None, SMALL, rng)
+    for _ in range(3):
+        ga.step()
+    held = rng, rng.bit_generator, ga.population.nodes, ga._problem.usable, ga._counter
+    gc.collect()
+    before = [sys.getrefcount(thing) for thing in held]
+    for _ in range(50):
+        ga.step()
+    gc.collect()
+    assert [sys.getrefcount(thing) for thing in held] == before
+
+
 def test_the_path_that_it_returns_is_not_touched_by_later_generations():
     ga = KBGA(WALL, WALL.query(), SMALL, np.random.default_rng(0))
     while ga.best_path is None:
@@ -253,3 +316,14 @@ def test_whole_numbers_for_probabilities_do_not_compile_it_again():
         ),
     )
     assert len(next_children.signatures) == compiled
+
+
+# Probabilities that are tuned
+
+
+def test_tuned_probabilities_are_the_same_for_the_same_seed_and_leave_those_of_the_settings():
+    adaptive = replace(SMALL, adaptation_rate=0.3)
+    first, second, fixed = (evolve(WALL, s, seed=3) for s in (adaptive, adaptive, SMALL))
+    assert fingerprint(first) == fingerprint(second)
+    assert first._rates == second._rates != rates_of(adaptive)
+    assert fixed._rates == rates_of(SMALL)

@@ -1,5 +1,7 @@
 """Eq. (1) by hand, Fig. 3 case by case, and shapely on what is feasible."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import shapely
@@ -105,6 +107,44 @@ def test_c_a_bent_wall_from_border_to_border_is_closed_on_both_sides():
     # Across the bend both joints lie on one side, and the corner (4, 6) is all there is on the
     # other, 1 / sqrt(2) from the line y = x + 1.
     assert depth((3, 4, 6, 7), bent) == pytest.approx(1 / np.sqrt(2))
+
+
+def test_c_a_joint_that_lies_ahead_of_the_segment_is_a_dead_end_on_neither_side():
+    assert depth((0, 5.5, 8, 5.5), box(4, 4, 10, 6)) == 0.5
+    assert depth((5, 3, 5, 7), box(4, 0, 6, 10)) == 1.0  # one ahead and one behind
+    assert depth((4.5, 3, 4.5, 7), box(4, 0, 6, 10)) == 0.5
+
+
+def test_c_a_joint_is_one_joint_however_the_obstacle_is_cut_up():
+    whole = box(4, 4, 10, 6)
+    for y in (4.5, 5.0, 5.5):
+        cut = box(4, 4, 10, y), box(4, y, 10, 6)
+        for height in (4.25, 4.75, 5.25, 5.75):
+            assert depth((0, height, 8, height), *cut) == depth((0, height, 8, height), whole)
+            assert depth((0, height, 8, height), *cut) == min(height - 4, 6 - height)
+
+
+def test_c_a_joint_with_a_slanted_border_is_one_joint_too():
+    # The border from (10, 0) to (7, 10): vertices on it are on the line only up to the grid.
+    room = Polygon([(0, 0), (10, 0), (7, 10), (0, 10)])
+    on_border = [(10 - 0.3 * y, y) for y in (4.0, 4.3, 4.9, 6.0)]
+    slabs = [
+        Polygon([(4, lower[1]), lower, upper, (4, upper[1])])
+        for lower, upper in pairwise(on_border)
+    ]
+    found = record(arrange(room, slabs), (0.0, 4.5, 8.0, 4.5))
+    assert found["depth"] == pytest.approx(0.5, rel=1e-9)
+
+
+def test_c_a_joint_in_a_point_ahead_is_a_dead_end_on_neither_side():
+    spike = Polygon([(4, 8), (7, 8), (5, 10)])
+    assert depth((5, 7, 5, 9), spike) == 1.0
+    assert depth((5.5, 7, 5.5, 9), spike) == 1.5  # the point is on the other side: no way there
+    assert depth((4.5, 7, 4.5, 9), spike) == 0.5
+
+
+def test_c_of_a_joint_in_a_corner_of_the_room_only_the_border_above_is_a_dead_end():
+    assert depth((0, 9.5, 9, 9.5), box(8, 8, 10, 10)) == 1.5
 
 
 def test_c_only_the_group_that_is_joined_has_a_dead_end():

@@ -9,8 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kbga.encoding import GOAL, START, Population
-from kbga.evolution import best_feasible
-from tests.kbga.laboratory import Laboratory, check, laboratory, random_scene, scene_of, with_paths
+from kbga.evolution import _transform, best_feasible
+from tests.kbga.laboratory import (
+    Laboratory,
+    check,
+    laboratory,
+    near_nodes,
+    random_scene,
+    scene_of,
+    with_paths,
+)
 from tests.suite.geometry.lattice import counts
 
 SEEDS = st.integers(0, 2**32)
@@ -155,3 +163,83 @@ def test_the_best_feasible_chromosome_need_not_be_the_cheapest():
 def test_without_a_feasible_chromosome_there_is_no_best_one():
     wall = scene_of(shapely.box(4, 0, 6, 10), ends=((0, 5), (10, 5)))
     assert best_feasible(laboratory(wall).population, 0, 10) == -1
+
+
+# Better paths within a generation
+
+
+@settings(max_examples=counts(60, 6))
+@given(SEEDS, st.sampled_from([2, 3, 8, 9]))
+def test_children_that_are_made_in_parts_are_those_that_are_made_in_one_go(seed, population_size):
+    scene = random_scene(np.random.default_rng(seed))
+    parts, whole = (
+        laboratory(scene, seed, population_size=population_size, repair_limit=np.inf)
+        for _ in range(2)
+    )
+    made = 0
+    while made < population_size:
+        # So high a best never pauses it but for a feasible child: then after each.
+        before, made = made, parts.make_children(made, 1e300)
+        assert made > before
+        last = parts.best_feasible_cost(parts.children, before, made) < np.inf
+        earlier = parts.best_feasible_cost(parts.children, before, max(before, made - 2)) < np.inf
+        assert not earlier, "it pauses at once"
+        assert last or made == population_size, "it pauses for nothing else"
+    assert whole.make_children(0, 1e-300) == population_size, "nothing costs less: no pause"
+    for one, other in zip(parts.children, whole.children, strict=True):
+        assert one.tobytes() == other.tobytes()
+    assert parts.counter[0] == whole.counter[0]
+
+
+def test_a_path_that_is_longer_than_the_best_is_not_repaired_unless_that_is_wanted():
+    wall = scene_of(shapely.box(4, 2, 6, 8), ends=((0, 5), (10, 5)))
+    only_repair = {
+        f"{operator}_probability": float(operator == "repair")
+        for operator in ("crossover", "mutation", "repair", "deletion", "improvement")
+    }
+    repaired = {}
+    for limit in (0.5, 1.0, 1.5, np.inf):
+        for best in (9.0, 10.5, np.inf):
+            lab = laboratory(wall, repair_limit=limit, **only_repair)
+            with_paths(lab, [])  # straight on: 10 m, through the wall
+            before = lab.genes(0)
+            args = lab.scratch, lab.problem, lab.rates, lab.fresh_draws(), lab.counter, lab.tally
+            _transform(lab.population, 0, best, *args)
+            repaired[limit, best] = lab.genes(0) != before
+    assert repaired == {
+        (limit, best): limit * best > 10.0
+        for limit in (0.5, 1.0, 1.5, np.inf)
+        for best in (9.0, 10.5, np.inf)
+    }
+
+
+# A first population that knows of the obstacles
+
+
+@settings(max_examples=counts(40, 5))
+@given(SEEDS, st.sampled_from([0.0, 0.3, 1.0]), st.sampled_from([2, 3, 12]))
+def test_the_records_of_an_informed_population_are_true(seed, share, max_nodes):
+    scene = random_scene(np.random.default_rng(seed))
+    lab = laboratory(scene, seed, informed_share=share, max_nodes=max_nodes)
+    check(lab)
+    lab.next_generation()
+    check(lab)
+
+
+HALVES = (range(20), range(20, 40))
+
+
+def test_informed_chromosomes_have_nodes_next_to_obstacles_and_the_others_any():
+    scene = scene_of(shapely.box(4, 2, 6, 8))
+    near = set(near_nodes(laboratory(scene).problem, 0))
+    lab = laboratory(scene, population_size=40, informed_share=0.5)
+    informed, others = ([g in near for i in half for g in lab.genes(i)] for half in HALVES)
+    assert np.mean(informed) == 1.0 > 0.2 > np.mean(others)
+    feasible = [sum(lab.is_feasible(i) for i in half) for half in HALVES]
+    assert feasible[0] > feasible[1], "they are repaired at once"
+
+
+def test_without_obstacles_informed_chromosomes_are_random_ones():
+    lab = laboratory(scene_of(), informed_share=1.0)
+    check(lab)
+    assert len({tuple(lab.genes(i)) for i in range(10)}) > 5

@@ -2,9 +2,11 @@
 
 import numpy as np
 import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from kbga.encoding import empty_population
-from kbga.evaluation import evaluate_segment, evaluate_within, is_free_segment
+from kbga.evaluation import LEAST_DEPTH, evaluate_segment, evaluate_within, is_free_segment
 from kbga.memory import (
     FIRST_SLOTS,
     MOST_SLOTS,
@@ -16,6 +18,7 @@ from kbga.memory import (
     with_room,
 )
 from suite.geometry.arrangement import arrange
+from tests.suite.geometry.lattice import counts, random_segments, random_solid
 
 WALL = arrange(shapely.box(0, 0, 10, 10), [shapely.box(4, 0, 6, 7)]).arrays
 FREE = ((1.0, 9.0), (9.0, 9.0))
@@ -135,6 +138,18 @@ def test_a_crowded_table_grows_and_forgets_nothing():
     assert bench.counter[0] == checks == known, "nothing was checked again"
 
 
+def test_what_is_measured_in_part_goes_on_in_the_larger_table():
+    slabs = [shapely.box(x, 0, x + 1, 9) for x in (2, 4, 6)]
+    bench = Bench(arrange(shapely.box(0, 0, 10, 10), slabs).arrays)
+    bench.put(BLOCKED)
+    assert not bench.stays_below(8.0 + 9.0)
+    bench.memory = with_room(bench.memory, FIRST_SLOTS)
+    assert -bench.known_depth() == 16.0
+    assert bench.evaluate() == 24.0
+    assert sorted(bench.nodes["hits"][0, 0, :3].tolist()) == [0, 1, 2]
+    assert bench.counter[0] == 1
+
+
 def test_the_largest_table_stays_as_it_is():
     largest = empty_memory(MOST_SLOTS)
     assert with_room(largest, 10**9) is largest
@@ -154,3 +169,59 @@ def test_keys_tell_all_segments_apart():
     keys = {key_of(tail, head) for tail in ends[1:] for head in ends}
     assert len(keys) == 4 * 5
     assert NOBODY not in keys
+
+
+ASKED = st.lists(
+    st.tuples(
+        st.sampled_from(["is_free", "evaluate", "stays_below"]),
+        st.sampled_from([0.0, 0.5, 2.0, 20.0]),  # all else costs
+        st.sampled_from([0.0, 0.25, 1.0, 30.0]),  # penalty
+        st.sampled_from([0.0, 0.5, 1.0, 2.5, 4.0, 9.0, 21.0, 1e6, np.inf]),  # limit
+    ),
+    min_size=1,
+    max_size=8,
+)
+
+
+@settings(max_examples=counts(300, 40))
+@given(st.integers(0, 2**32), ASKED)
+def test_whatever_was_asked_before_the_answer_is_that_of_a_fresh_evaluation_bit_for_bit(
+    seed, asked
+):
+    rng = np.random.default_rng(seed)
+    room, obstacles = random_solid(rng)
+    arrays = arrange(room, obstacles).arrays
+    for ax, ay, bx, by in random_segments(rng, room, 10).tolist():
+        genes = [(7, 8), (-1, 8), (-1, -2)][int(rng.integers(0, 3))]
+        fresh, bench = Bench(arrays), Bench(arrays)
+        for one in (fresh, bench):
+            one.put(((ax, ay), (bx, by)), *genes)
+        depth = fresh.evaluate()
+        for question, cost, penalty, limit in [*asked, ("evaluate", 0.0, 0.0, np.inf)]:
+            bench.put(((ax, ay), (bx, by)), *genes)
+            if question == "evaluate":
+                wanted, answer = True, bench.evaluate() == depth
+            elif question == "is_free":
+                wanted, answer = depth == 0.0, bench.is_free()
+            else:
+                wanted = cost + depth * penalty < limit
+                args = arrays, bench.memory, cost, penalty, limit, bench.counter
+                answer = bool(evaluate_within(bench.nodes, 0, 0, *args))
+            assert answer == wanted, question
+            if answer:
+                count = int(fresh.nodes["hit_count"][0, 0])
+                for name in ("length", "depth", "hit_count"):
+                    assert bench.nodes[name][0, 0] == fresh.nodes[name][0, 0], name
+                found, known = (b.nodes["hits"][0, 0, :count].tolist() for b in (fresh, bench))
+                assert found == known
+        assert bench.counter[0] == 1
+
+
+def test_a_segment_that_only_a_pinch_point_closes_is_measured_in_full_at_once():
+    corners = shapely.box(3, 3, 5, 5), shapely.box(5, 5, 7, 7)
+    bench = Bench(arrange(shapely.box(0, 0, 10, 10), list(corners)).arrays)
+    bench.put(((4.0, 6.0), (6.0, 4.0)))
+    assert not bench.stays_below(8.0)
+    assert bench.known_depth() == LEAST_DEPTH
+    assert not bench.is_free()
+    assert bench.evaluate() == LEAST_DEPTH

@@ -1,5 +1,11 @@
 """KBGA behind the plugin interface: budgets kept, improvements told, claims true."""
 
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 import shapely
@@ -7,10 +13,12 @@ import shapely
 from kbga.plugin import KBGAPlanner
 from kbga.settings import KBGASettings
 from suite.planner import Budget, Plan, PlanStatus, Recorder
+from suite.plugins import make_settings, settings_as_dict
+from suite.record import canonical_json
 from suite.referee import judge
 from suite.scene import Scene
 from tests.kbga.laboratory import scene_of
-from tests.suite.geometry.lattice import counts
+from tests.suite.geometry.lattice import COMPILED, counts
 
 SMALL = KBGASettings(population_size=12, resolution=20, max_generations=counts(15, 5))
 WALL = scene_of(shapely.box(4, 0, 6, 8))
@@ -62,7 +70,44 @@ def test_improvements_fall_and_the_last_is_the_path_returned():
     assert costs[-1] == pytest.approx(np.hypot(*np.diff(made.path, axis=0).T).sum())
     last = recorder.improvements[-1]
     assert (last.cost, last.generation) == (made.claimed_cost, made.generation_of_best)
-    assert sorted(i.checks or 0 for i in recorder.improvements)[-1] <= (made.checks or 0)
+    checks = [i.checks or 0 for i in recorder.improvements]
+    assert checks == sorted(checks)
+    assert checks[-1] <= (made.checks or 0)
+
+
+@pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
+def test_after_the_warm_up_a_run_compiles_and_loads_nothing_more():
+    code = """
+from pathlib import Path
+import sys
+import numpy as np
+from numba.core.registry import CPUDispatcher
+from kbga.plugin import KBGAPlanner
+from suite.planner import Budget, Recorder
+from suite.scenes.catalogue import load_scene
+
+def compiled():
+    kernels = [k for m in list(sys.modules.values()) for k in vars(m).values()
+               if isinstance(k, CPUDispatcher)]
+    return {k.py_func.__qualname__: len(k.signatures) for k in kernels}
+
+scene, recorder = load_scene("clustered"), Recorder()
+KBGAPlanner().warm_up()
+before = compiled()
+recorder.start_clock()
+made = KBGAPlanner().plan(scene, scene.query(), Budget(), np.random.default_rng(0), recorder)
+after = compiled()
+assert made.checks > 2048, "its table grows"
+print({name: n for name, n in after.items() if n != before[name]})
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=Path(__file__).parents[2],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.strip() == "{}"
 
 
 def test_the_trace_has_a_row_per_generation_the_first_population_included():
@@ -121,3 +166,11 @@ def test_it_keeps_the_budgets_that_it_says_it_keeps():
     assert KBGAPlanner.abilities.anytime
     assert KBGAPlanner.abilities.budgets == {"wall_s", "generations", "checks"}
     assert not KBGAPlanner.abilities.exact
+
+
+def test_an_infinite_repair_limit_survives_the_way_through_a_matrix_and_the_store():
+    made = make_settings(KBGAPlanner, {"repair_limit": "inf"})  # as --set gives it
+    assert made == make_settings(KBGAPlanner, {"repair_limit": math.inf})  # as TOML gives it
+    stored = json.loads(canonical_json(settings_as_dict(made)))
+    assert make_settings(KBGAPlanner, stored) == made
+    assert stored["repair_limit"] == math.inf

@@ -5,10 +5,13 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kbga.problem import Problem, make_problem
+from kbga.algorithm import KBGA
+from kbga.problem import MOST_NEAR, Problem, is_known_usable, is_usable, make_problem
+from kbga.settings import KBGASettings
+from suite.geometry.arrangement import arrange
 from suite.scene import Scene
 from tests.kbga.laboratory import all_near_nodes, near_nodes, random_scene, scene_of
-from tests.suite.geometry.lattice import counts, pinches
+from tests.suite.geometry.lattice import counts, pinches, random_solid
 
 
 def problem_of(scene: Scene, resolution: int) -> Problem:
@@ -74,3 +77,58 @@ def test_a_corner_whose_cell_is_closed_looks_one_cell_further():
     free = places(problem_of(slab, 2), near_nodes(problem_of(slab, 2), 0)).tolist()
     assert [10.0, 5.0] in free
     assert [5.0, 5.0] not in free
+
+
+@settings(max_examples=counts(60, 6))
+@given(
+    st.integers(0, 2**32),
+    st.sampled_from([2, 3, 7, 10, 30]),
+    st.sampled_from([0.0, 0.1, 1 / 3, 1e8]),
+    st.sampled_from([1.0, 0.1, 1 / 3, 7.7]),
+)
+def test_the_near_nodes_of_a_group_have_room_beside_those_of_the_next(
+    seed, resolution, offset, scale
+):
+    rng = np.random.default_rng(seed)
+    room, obstacles = random_solid(rng)
+    # Corners on lattice lines, beside them by a rounding, and anywhere.
+    room, *obstacles = (
+        shapely.transform(p, lambda xy: scale * xy + offset) for p in (room, *obstacles)
+    )
+    problem = make_problem(arrange(room, obstacles), room.bounds, resolution)
+    groups = len(problem.near_count)
+    found = {int(g): near_nodes(problem, int(g)) for g in rng.permutation(groups)}
+    for group in range(groups):
+        corners = problem.near_start[group + 1] - problem.near_start[group]
+        assert len(found[group]) <= MOST_NEAR * corners
+        assert near_nodes(problem, group) == found[group], "asked again, it says the same"
+
+
+def test_the_corners_of_the_frame_have_near_nodes_too():
+    room = shapely.box(0, 0, 10, 10).difference(shapely.box(4, 0, 6, 7))
+    problem = problem_of(scene_of(room=room, ends=((1, 1), (9, 1))), 10)
+    near = near_nodes(problem, 0)
+    assert {7 * 11 + 4, 7 * 11 + 6} <= set(near)
+
+
+def test_where_no_node_is_free_there_is_none_near_and_a_run_goes_on_all_the_same():
+    # Three by three nodes: eight under a wall along the border, and one in the middle of a box.
+    wall = shapely.box(0, 0, 10, 10).difference(shapely.box(0.5, 0.5, 9.5, 9.5))
+    scene = scene_of(wall, shapely.box(4, 4, 6, 6))
+    problem = problem_of(scene, 2)
+    assert not any(is_usable(n, problem.arrays, problem.lattice) for n in range(9))
+    assert all_near_nodes(problem) == []
+    chosen = KBGASettings(resolution=2, population_size=6, max_generations=5, informed_share=0.5)
+    ga = KBGA(scene, settings=chosen, rng=0)
+    assert ga.run() is None
+    assert ga.generation == 5
+
+
+@settings(max_examples=counts(20, 3))
+@given(st.integers(0, 2**32))
+def test_what_is_known_of_a_node_is_what_is_found_of_it_asked_once_or_twice(seed):
+    problem = problem_of(random_scene(np.random.default_rng(seed)), 8)
+    for node in range(81):
+        usable = is_usable(node, problem.arrays, problem.lattice)
+        assert is_known_usable(node, problem) == usable
+        assert is_known_usable(node, problem) == usable

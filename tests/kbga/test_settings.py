@@ -5,7 +5,7 @@ from dataclasses import FrozenInstanceError, fields
 import numpy as np
 import pytest
 
-from kbga.settings import KBGASettings
+from kbga.settings import FINEST, KBGASettings
 
 WHOLE = {
     "population_size": 2,
@@ -20,6 +20,7 @@ WHOLE = {
     "stagnation": 1,
 }
 PROBABILITIES = [f.name for f in fields(KBGASettings) if f.name.endswith("_probability")]
+SHARES = [*PROBABILITIES, "informed_share", "adaptation_rate"]
 NAN, INF = float("nan"), float("inf")
 
 
@@ -52,7 +53,7 @@ def test_a_numpy_integer_is_a_whole_number():
     assert KBGASettings(population_size=np.int64(7)).population_size == 7
 
 
-@pytest.mark.parametrize("name", PROBABILITIES)
+@pytest.mark.parametrize("name", SHARES)
 def test_a_probability_lies_between_0_and_1_both_allowed(name):
     for good in (0.0, 1.0, 0, 1):
         assert getattr(KBGASettings(**{name: good}), name) == good
@@ -64,7 +65,7 @@ def test_a_probability_lies_between_0_and_1_both_allowed(name):
 WRONG = ["0.5", None, True, False, np.True_, [0.5], np.array([0.5, 0.5]), 1j]
 
 
-@pytest.mark.parametrize("name", PROBABILITIES)
+@pytest.mark.parametrize("name", SHARES)
 @pytest.mark.parametrize("bad", WRONG)
 def test_a_probability_is_a_number(name, bad):
     with pytest.raises(ValueError, match=r"it must lie in \[0, 1\]$") as error:
@@ -88,6 +89,24 @@ def test_a_penalty_is_finite_and_not_negative(bad):
     with pytest.raises(ValueError, match=f"^penalty is {bad}; it must be 0 or more, and finite$"):
         KBGASettings(penalty=bad)
     assert KBGASettings(penalty=0.0).penalty == 0.0
+
+
+@pytest.mark.parametrize("bad", [*WRONG, 0, 0.0, -1.0, -INF, NAN])
+def test_a_repair_limit_is_a_number_above_0(bad):
+    with pytest.raises(ValueError, match=r"^repair_limit is .*; it must be above 0$") as error:
+        KBGASettings(repair_limit=bad)
+    assert str(error.value).startswith(f"repair_limit is {bad!r}; ")
+
+
+@pytest.mark.parametrize("good", [1e-9, 1, 2.5, INF])
+def test_a_repair_limit_may_be_infinite(good):
+    assert KBGASettings(repair_limit=good).repair_limit == good
+
+
+def test_a_resolution_has_a_finest():
+    assert KBGASettings(resolution=FINEST).resolution == FINEST
+    with pytest.raises(ValueError, match=r"^resolution is 20001; it must be at most 20000$"):
+        KBGASettings(resolution=FINEST + 1)
 
 
 def test_a_misspelt_setting_is_a_type_error():

@@ -6,7 +6,17 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.kbga.laboratory import check, laboratory, random_scene, scene_of, with_paths
+from kbga.operators.improvement import _move
+from kbga.problem import is_usable
+from tests.kbga.laboratory import (
+    check,
+    detour,
+    laboratory,
+    neighbours,
+    random_scene,
+    scene_of,
+    with_paths,
+)
 from tests.suite.geometry.lattice import counts
 
 WALL = shapely.box(4, 2, 6, 8)
@@ -87,3 +97,31 @@ def test_nodes_stay_on_the_lattice_at_the_border():
     for i in (0, 1):
         lab.improve(i)
     check(lab)
+
+
+@settings(max_examples=counts(60, 8))
+@given(st.integers(0, 2**32), st.sampled_from([4, 8, 16]))
+def test_of_all_free_neighbours_the_one_that_makes_the_path_shortest_is_taken(seed, resolution):
+    lab = laboratory(
+        random_scene(np.random.default_rng(seed)),
+        seed,
+        resolution=resolution,
+        population_size=20,
+        initial_nodes=2,
+    )
+    nodes, problem = lab.population.nodes, lab.problem
+    for i in range(20):
+        size = len(lab.genes(i))
+        if not lab.is_feasible(i):
+            continue
+        for k in range(1, size + 1):
+            before, node, after = nodes[i, k - 1].copy(), nodes[i, k].copy(), nodes[i, k + 1].copy()
+            lengths = {int(node["gene"]): float(before["length"] + node["length"])}
+            for gene in neighbours(lab, int(node["gene"])):
+                new = detour(lab, before, gene, after)
+                usable = is_usable(gene, problem.arrays, problem.lattice)
+                if usable and gene not in lab.genes(i) and (new["depth"] == 0.0).all():
+                    lengths[gene] = float(new["length"].sum())
+            moved = _move(nodes, i, size, k, 1, lab.scratch, problem, lab.counter)
+            assert lengths[int(nodes[i, k]["gene"])] <= min(lengths.values()) + 2e-9
+            assert moved == (nodes[i, k]["gene"] != node["gene"])

@@ -6,8 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.kbga.laboratory import (
+    Laboratory,
     all_near_nodes,
     check,
+    detour,
     laboratory,
     near_nodes,
     random_scene,
@@ -55,6 +57,38 @@ def test_the_best_candidate_is_taken():
     assert lab.repair(0)
     assert lab.is_feasible(0)
     assert np.isclose(lab.cost(0), 12.0)
+
+
+@settings(max_examples=counts(60, 8))
+@given(st.integers(0, 2**32), st.sampled_from([0.0, 0.1, 3.0, 100.0]), st.sampled_from([8, 16]))
+def test_no_node_next_to_the_obstacle_would_cost_less_than_the_one_taken(seed, penalty, resolution):
+    scene = random_scene(np.random.default_rng(seed))
+    lab = laboratory(scene, seed, resolution=resolution, penalty=penalty, repair_candidates=10_000)
+    for i in range(10):
+        before, known = lab.genes(i), lab.population.nodes[i].copy()
+        if not lab.repair(i):
+            continue
+        row = lab.population.nodes[i]
+        (gene,) = set(lab.genes(i)) - set(before)
+        k = lab.genes(i).index(gene)
+        taken = sum(float(n["length"] + n["depth"] * penalty) for n in row[k : k + 2])
+        hits = known["hits"][k][: known["hit_count"][k]].tolist()
+        cheapest = [
+            min(
+                (cost_of(lab, known[k], other, known[k + 1]), other)
+                for other in near_nodes(lab.problem, group)
+                if other not in before
+            )
+            for group in hits
+            if set(near_nodes(lab.problem, group)) - set(before)
+        ]
+        assert any(abs(taken - cost) <= 1e-9 * (1 + cost) for cost, _ in cheapest)
+
+
+def cost_of(lab: Laboratory, before: np.void, gene: int, after: np.void) -> float:
+    """Of the two segments over a node, evaluated anew."""
+    new = detour(lab, before, gene, after)
+    return float((new["length"] + new["depth"] * lab.rates.penalty).sum())
 
 
 def test_no_node_is_inserted_into_a_path_of_the_longest_length():

@@ -9,7 +9,16 @@ from shapely.affinity import rotate
 from shapely.geometry import Point, Polygon, box
 
 from suite.geometry.arrangement import Arrangement, arrange
-from suite.geometry.kernels import AFTER, GROUP, first_collision, next_entry, segment_enters
+from suite.geometry.kernels import (
+    AFTER,
+    GROUP,
+    _segment_enters_part_exactly,
+    first_collision,
+    next_entry,
+    segment_enters,
+    segment_enters_part,
+)
+from suite.geometry.predicates import orientation
 from tests.suite.geometry.lattice import (
     counts,
     enters,
@@ -88,6 +97,56 @@ def test_kernel_and_shapely_agree_on_the_half_lattice(seed, halves):
     segment = np.array([halves], dtype=float) / 2
     arrangement = arrange(room, obstacles)
     assert disagreements(arrangement, arrangement.solid, segment) == []
+
+
+# The quick test of one part against the exact one
+
+
+def convex_part(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Vertices of the convex hull, counter-clockwise by exact signs; none if it has no area."""
+    hull: list[tuple[float, float]] = []
+    for chain in (sorted(set(points)), sorted(set(points), reverse=True)):
+        begin = len(hull)
+        for p in chain:
+            while len(hull) > begin + 1 and orientation(*hull[-2], *hull[-1], *p) <= 0:
+                hull.pop()
+            hull.append(p)
+        hull.pop()
+    return hull if len(hull) > 2 else []
+
+
+def assert_quick_is_exact(part, seams, ends):
+    vertices = np.array([(x, y, s) for (x, y), s in zip(part, seams, strict=False)], dtype=float)
+    for ax, ay, bx, by in (ends, (*ends[2:], *ends[:2])):
+        if (ax, ay) != (bx, by):
+            asked = ax, ay, bx, by, vertices, 0, len(part) - 1
+            assert segment_enters_part(*asked) == _segment_enters_part_exactly(*asked)
+
+
+SEAMS = st.lists(st.booleans(), min_size=9, max_size=9)
+LATTICE = st.integers(0, 4).map(float)
+
+
+@settings(max_examples=counts(800, 200))
+@given(
+    st.lists(st.tuples(LATTICE, LATTICE), min_size=3, max_size=9), SEAMS, st.tuples(*[LATTICE] * 4)
+)
+def test_the_quick_test_of_a_part_is_exact_on_the_lattice(points, seams, ends):
+    part = convex_part(points)
+    if part:
+        assert_quick_is_exact(part, seams, ends)
+
+
+def test_the_quick_test_of_a_part_is_exact_where_vertices_lie_on_the_line_up_to_an_ulp():
+    rng = np.random.default_rng(0)
+    for _ in range(counts(10_000, 1000)):
+        a, b = rng.uniform(-1.0, 1.0, (2, 2)) * rng.choice([1e-6, 1.0, 1e9])
+        on_line = a + rng.uniform(-1.0, 2.0, (int(rng.integers(2, 5)), 1)) * (b - a)
+        on_line += np.spacing(on_line) * rng.integers(-1, 2, on_line.shape)
+        apex = a + (b - a)[::-1] * rng.uniform(-1.0, 1.0, 2)
+        part = convex_part([tuple(p) for p in [*on_line.tolist(), apex.tolist()]])
+        if part:
+            assert_quick_is_exact(part, rng.random(len(part)) < 0.5, (*a.tolist(), *b.tolist()))
 
 
 def test_direction_does_not_matter():
