@@ -21,7 +21,7 @@ class PlainGASettings:
     """Parameters of the plain GA; the others are KBGA's defaults.
 
     mutation_probability : per chromosome (paper Table 1: 0.5, the best of those tried; by the same
-        rule ours is 0.3, see results/mutation-rate).
+        rule ours is 0.2, see results/mutation-rate).
     crossover_probability : per pair of parents (paper III: 0.9).
     initial_nodes : most intermediate nodes of a chromosome in the first population (ours: twice
         KBGA's, for nothing but crossover makes a chromosome longer here).
@@ -31,7 +31,7 @@ class PlainGASettings:
         more than KBGA's, so that the plain GA never loses by stopping early).
     """
 
-    mutation_probability: float = 0.3
+    mutation_probability: float = 0.2
     crossover_probability: float = 0.9
     initial_nodes: int = 8
     penalty: float = 100.0
