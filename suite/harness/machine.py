@@ -82,7 +82,9 @@ def _git_state() -> dict[str, Any] | None:
         # A virtual environment may lie inside somebody else's checkout: that commit is not ours.
         _git(folder, "ls-files", "--error-unmatch", Path(__file__).name)
         commit = _git(folder, "rev-parse", "HEAD")
-        return {"commit": commit, "dirty": bool(_git(folder, "status", "--porcelain", "-uno"))}
+        # Results that are being made again change no result.
+        changed = _git(folder, "status", "--porcelain", "-uno", "--", ":/", ":(top,exclude)results")
+        return {"commit": commit, "dirty": bool(changed)}
     except (OSError, subprocess.SubprocessError):
         return None
 
