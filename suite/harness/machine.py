@@ -75,6 +75,9 @@ def _cpu_model() -> str:
     return names[0] if names else platform.machine()
 
 
+_SOURCES = (":/suite", ":/kbga", ":/baselines", ":/pyproject.toml")
+
+
 def _git_state() -> dict[str, Any] | None:
     """Commit of the checkout that this file lies in; None if it is installed from elsewhere."""
     folder = Path(__file__).parent
@@ -82,8 +85,8 @@ def _git_state() -> dict[str, Any] | None:
         # A virtual environment may lie inside somebody else's checkout: that commit is not ours.
         _git(folder, "ls-files", "--error-unmatch", Path(__file__).name)
         commit = _git(folder, "rev-parse", "HEAD")
-        # Results that are being made again change no result.
-        changed = _git(folder, "status", "--porcelain", "-uno", "--", ":/", ":(top,exclude)results")
+        # Of what runs only: results that are being made, or a text, change no result.
+        changed = _git(folder, "status", "--porcelain", "-uno", "--", *_SOURCES)
         return {"commit": commit, "dirty": bool(changed)}
     except (OSError, subprocess.SubprocessError):
         return None
