@@ -56,6 +56,13 @@ class TextFormat(StrEnum):
     JSON = "json"
 
 
+class Charge(StrEnum):
+    """What simulated time planning takes; see :class:`suite.dynamic.settings.Charge`."""
+
+    MEASURED = "measured"
+    ZERO = "zero"
+
+
 class TableFormat(StrEnum):
     """How tables are printed; see :class:`suite.report.table.Format`."""
 
@@ -212,6 +219,81 @@ def plan(
     else:
         typer.echo(as_text(record))
     raise typer.Exit(0 if succeeded(record) else 1)
+
+
+@app.command()
+def simulate(
+    scene: SceneArgument,
+    planner: Annotated[str, typer.Option(help="Name of the planner; see `list planners`.")],
+    seed: Annotated[int, typer.Option(min=0, help="Of the random stream.")] = 0,
+    query: Annotated[str | None, typer.Option(help="Name of the query; default: the first.")] = (
+        None
+    ),
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="A setting of the planner; repeatable."),
+    ] = None,
+    cold: Annotated[
+        bool, typer.Option("--cold", help="Plan afresh at every update, whatever the planner can.")
+    ] = False,
+    speed: Annotated[float | None, typer.Option(help="Of the robot, metres per second.")] = None,
+    interval: Annotated[float | None, typer.Option(help="Seconds between updates.")] = None,
+    sensing_range: Annotated[
+        float | None, typer.Option(help="Metres within which unknown obstacles are detected.")
+    ] = None,
+    obstacle_speed_factor: Annotated[
+        float | None, typer.Option(help="All obstacles move so many times as fast.")
+    ] = None,
+    time_limit: Annotated[
+        float | None, typer.Option(help="Simulated seconds after which the run ends.")
+    ] = None,
+    charge: Annotated[
+        Charge, typer.Option(help="Simulated time that planning takes: its own, or none.")
+    ] = Charge.MEASURED,
+    wall_s: Annotated[float | None, typer.Option(help="Budget of each plan: seconds.")] = None,
+    generations: Annotated[
+        int | None, typer.Option(help="Budget of each plan: generations or iterations.")
+    ] = None,
+    checks: Annotated[
+        int | None, typer.Option(help="Budget of each plan: collision checks.")
+    ] = None,
+    style: Annotated[TextFormat, typer.Option("--format", help="For people or programs.")] = (
+        TextFormat.TEXT
+    ),
+) -> None:
+    """Let a robot find its way through a dynamic scene, planning anew as it goes.
+
+    Exit code 0 if it reached the goal and was never hit, 1 otherwise.
+
+    Example: kbga-bench simulate door --planner kbga --seed 3 --speed 5
+    """
+    from suite.dynamic.single import Wanted, as_data, as_text, run_single, unhurt
+    from suite.harness.single import parse_settings
+    from suite.planner import Budget
+
+    wanted = Wanted(
+        scene,
+        planner,
+        seed,
+        query=query,
+        cold=cold,
+        settings=parse_settings(settings or []),
+        world={
+            "speed": speed,
+            "interval": interval,
+            "sensing_range": sensing_range,
+            "obstacle_speed_factor": obstacle_speed_factor,
+            "time_limit": time_limit,
+            "charge": charge.value,
+        },
+        budget=Budget(wall_s, generations, checks),
+    )
+    done = run_single(wanted)
+    if style is TextFormat.JSON:
+        _print_json(as_data(wanted, done))
+    else:
+        typer.echo(as_text(wanted, done))
+    raise typer.Exit(0 if unhurt(done) else 1)
 
 
 @app.command()

@@ -25,6 +25,7 @@ _PAPER_ORDER = (
     "obstacles_30",
     "obstacles_40",
 )
+_DYNAMIC = ("door", "unknown_obstacles")
 _SCATTERED = (100, 300, 1000, 3000)
 """Obstacles of the scattered scenes that are listed; other numbers and seeds need no list."""
 
@@ -43,6 +44,22 @@ def scene_names() -> list[str]:
     ['unstructured', 'maze', 'zigzag']
     """
     return list(_PAPER_ORDER)
+
+
+def dynamic_names() -> list[str]:
+    """Names of the dynamic scenes of the catalogue, whose obstacles move, hide and vanish.
+
+    Returns
+    -------
+    list of str
+        In the order in which the paper shows their environments.
+
+    Examples
+    --------
+    >>> dynamic_names()
+    ['door', 'unknown_obstacles']
+    """
+    return list(_DYNAMIC)
 
 
 def generated_names() -> list[str]:
@@ -72,7 +89,7 @@ def has_scene(name: str) -> bool:
     >>> has_scene("maze"), has_scene("scattered_50-7"), has_scene("maze.geojson")
     (True, True, False)
     """
-    return name in _PAPER_ORDER or parse_scattered_name(name) is not None
+    return name in _PAPER_ORDER + _DYNAMIC or parse_scattered_name(name) is not None
 
 
 def scene_file(name: str) -> Path:
@@ -81,7 +98,7 @@ def scene_file(name: str) -> Path:
     Parameters
     ----------
     name : str
-        One of :func:`scene_names`.
+        One of :func:`scene_names` or :func:`dynamic_names`.
 
     Returns
     -------
@@ -96,7 +113,7 @@ def scene_file(name: str) -> Path:
         raise SceneError(
             f"{name}: is generated and has no file. Write one with `kbga-bench generate`."
         )
-    if name not in _PAPER_ORDER:
+    if name not in _PAPER_ORDER + _DYNAMIC:
         raise SceneError(_unknown(name))
     return _FOLDER / f"{name}.geojson"
 
@@ -107,8 +124,9 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
     Parameters
     ----------
     name_or_path : str or Path
-        One of :func:`scene_names` or :func:`generated_names`, or a scene file. A string with a
-        path separator or with the suffix of a scene file (``.geojson``, ``.json``) is a path.
+        One of :func:`scene_names`, :func:`dynamic_names` or :func:`generated_names`, or a scene
+        file. A string with a path separator or with the suffix of a scene file (``.geojson``,
+        ``.json``) is a path.
     inflate : float
         Radius of the robot, metres; see :func:`suite.scene.make_scene`.
 
@@ -157,8 +175,8 @@ def _inflated(scene: Scene, inflate: float) -> Scene:
 
 def _unknown(name: str) -> str:
     message = (
-        f"no scene '{name}'. Catalogue: {', '.join(_PAPER_ORDER)}. "
+        f"no scene '{name}'. Catalogue: {', '.join(_PAPER_ORDER)}. Dynamic: {', '.join(_DYNAMIC)}. "
         f"Generated: {', '.join(generated_names())}, or scattered_N-S for N obstacles and seed S."
     )
-    nearest = get_close_matches(name, [*_PAPER_ORDER, *generated_names()], n=1)
+    nearest = get_close_matches(name, [*_PAPER_ORDER, *_DYNAMIC, *generated_names()], n=1)
     return message + (f" Did you mean '{nearest[0]}'?" if nearest else "")
