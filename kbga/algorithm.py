@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kbga.dynamic import disturb, genes_of, put_path, restart
-from kbga.encoding import Population, empty_population, path_of
+from kbga.encoding import Population, copy_chromosome, empty_population, path_of
 from kbga.evolution import best_feasible, first_population, next_children
 from kbga.measures import GenerationReport, measure
 from kbga.memory import empty_memory, with_room
@@ -216,13 +216,17 @@ class KBGA:
         self._take_lowest()
 
     def _keep_best_path(self) -> None:
-        """Put the best feasible path back if cheaper infeasible ones have driven it out."""
-        if self.best_path is None or best_feasible(self.population, 0, self._size) >= 0:
+        """Put the best feasible path first, at the cost of the worst: of equal ones it is taken.
+
+        The population may have lost it to infeasible ones that cost less.
+        """
+        if self.best_path is None:
             return
         worst = int(self.population.chromosomes["cost"].argmax())
+        copy_chromosome(self.population, 0, self.population, worst)
         lattice = self._problem.lattice
         genes = genes_of(self.best_path, lattice)
-        put_path(self.population, worst, genes, self.best_path[[0, -1]], lattice)
+        put_path(self.population, 0, genes, self.best_path[[0, -1]], lattice)
 
     def _disturb(self) -> None:
         best = best_feasible(self.population, 0, self._size)

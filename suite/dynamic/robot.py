@@ -126,7 +126,7 @@ def on_grid(place: NDArray[np.float64]) -> NDArray[np.float64]:
 def _places_around(place: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
     yield on_grid(place)
     step = GRID
-    while step < HIT_DEPTH:
+    while step < 4.0 * HIT_DEPTH:
         for dx in (0, 1, -1):
             for dy in (0, 1, -1):
                 if dx or dy:

@@ -93,6 +93,7 @@ def test_lists_are_json_for_programs(kbga_bench):
     scattered = next(scene for scene in scenes if scene["name"] == "scattered_300")
     assert (scattered["generated"], scattered["parts"], scattered["path"]) == (True, 300, None)
     assert set(scattered) == set(zigzag)
+    assert [scene["name"] for scene in scenes if scene["dynamic"]] == ["door", "unknown_obstacles"]
     matrices = json.loads(kbga_bench("list", "matrices", "--format", "json").out)
     paper = next(matrix for matrix in matrices if matrix["name"] == "paper-static")
     assert paper["runs"] == 8 * 6 * 20
@@ -104,6 +105,52 @@ def test_a_plugin_that_cannot_be_imported_is_listed_with_the_reason(kbga_bench, 
     assert not broken["available"]
     assert "no_such_module" in broken["reason"]
     assert "wanderer" in kbga_bench("list", "planners").out
+
+
+SIMULATE = ("simulate", "door", "--planner", "kbga", "--charge", "zero")
+
+
+def test_a_simulation_says_how_the_robot_fared_as_json_and_in_words(kbga_bench):
+    arguments = (*SIMULATE, "--seed", 3, "--speed", 5)
+    done = json.loads(kbga_bench(*arguments, "--format", "json").out)
+    assert (done["reached"], done["hits"], done["opening"]) == (True, [], "right")
+    assert done["world"]["speed"] == 5.0
+    first, *_, last = done["trajectory"]
+    assert (first, last) == ([0.0, 70.0, 6.0], [done["time"], 88.0, 94.0])
+    assert {"time", "latency_s", "cost", "status"} <= set(done["replans"][0])
+    assert done["waiting_time"] == 0.0
+    said = kbga_bench(*arguments).out
+    assert said.startswith("door / kbga / seed 3: reached\n  hit          never\n")
+    assert "openings     right at" in said
+
+
+def test_the_same_simulation_gives_the_same_trajectory_when_planning_is_free(kbga_bench):
+    one, same = (
+        json.loads(kbga_bench(*SIMULATE, "--seed", 3, "--format", "json").out) for _ in range(2)
+    )
+    assert one["trajectory"] == same["trajectory"]
+
+
+def test_a_simulation_that_does_not_reach_its_goal_ends_with_code_1(kbga_bench):
+    done = kbga_bench(*SIMULATE, "--time-limit", 3, "--format", "json", code=1)
+    assert json.loads(done.out)["outcome"] == "out_of_time"
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "message"),
+    [
+        ("--speed", 0, "world: speed is 0.0. It must be a finite number, above 0."),
+        ("--set", "colour=red", "kbga: no setting 'colour'."),
+        ("--query", "home", "door: no query 'home'. It has: main."),
+    ],
+)
+def test_a_simulation_that_cannot_be_run_says_why(error_of, option, value, message):
+    assert message in error_of(*SIMULATE, option, value)
+
+
+def test_a_planner_that_refuses_is_not_simulated(error_of):
+    said = error_of("simulate", "door", "--planner", "ompl-rrtstar", "--generations", 9)
+    assert "ompl-rrtstar refuses: ompl-rrtstar can't be limited by generations." in said
 
 
 def test_generate_keeps_a_scene_as_a_file_that_is_the_same_scene(kbga_bench, tmp_path):
