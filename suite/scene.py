@@ -116,7 +116,8 @@ class Scene:
     def hash(self) -> str:
         """Hash of workspace and obstacles: what a result depends on, whatever the name says."""
         content = [self.workspace.wkb_hex, *(o.polygon.wkb_hex for o in self.obstacles)]
-        content += [f"{o.name} {as_text(o.dynamics)}" for o in self.obstacles if o.dynamics]
+        dynamics = [(i, o.dynamics) for i, o in enumerate(self.obstacles)]
+        content += [f"{i} {as_text(changes)}" for i, changes in dynamics if changes is not None]
         return hashlib.sha256("\n".join(content).encode()).hexdigest()[:16]
 
     @property

@@ -17,6 +17,9 @@ there in what is known then. What the paper leaves open, we decide so:
   asked: it waits. That is a hit, which the referee of the run reports.
 - A hit is recorded and the run goes on, so that one hit does not hide what else there is to see.
 - A run ends at the goal or at its time limit.
+
+Nothing is sampled: the robot drives from event to event (waypoints, updates, answers of the
+planner), so there is no time step to choose.
 """
 
 import gc

@@ -203,8 +203,9 @@ def test_an_unknown_name_is_answered_with_the_catalogue_and_the_nearest_name():
         load_scene("mase")
     assert str(error.value) == (
         "no scene 'mase'. Catalogue: unstructured, maze, zigzag, double_u, clustered, "
-        "obstacles_20, obstacles_30, obstacles_40. Generated: scattered_100, scattered_300, "
-        "scattered_1000, scattered_3000, or scattered_N-S for N obstacles and seed S. "
+        "obstacles_20, obstacles_30, obstacles_40. Dynamic: door, unknown_obstacles. Generated: "
+        "scattered_100, scattered_300, scattered_1000, scattered_3000, or scattered_N-S for N "
+        "obstacles and seed S. "
         "Did you mean 'maze'?"
     )
 
