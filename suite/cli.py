@@ -47,6 +47,7 @@ class Generator(StrEnum):
     """What scenes can be drawn from a seed."""
 
     SCATTERED = "scattered"
+    MOVING = "moving"
 
 
 class TextFormat(StrEnum):
@@ -120,22 +121,29 @@ def list_command(
 @app.command()
 def generate(
     generator: Annotated[Generator, typer.Argument(help="Kind of scene.")],
-    obstacles: Annotated[int, typer.Option(help="Number of obstacles, counted as convex parts.")],
     output: Annotated[Path, typer.Option(metavar="FILE", help="Scene file: .geojson or .json.")],
+    obstacles: Annotated[
+        int | None,
+        typer.Option(help="Number of scattered obstacles, counted as convex parts."),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Another seed gives another scene.")] = 0,
 ) -> None:
     """Draw a scene from a seed and write it to a file.
 
-    Without a file, `scattered_300-7` names the same scene wherever a scene is asked for.
+    Without a file, `scattered_300-7` names the same scene wherever a scene is asked for, and
+    `moving-7` the one of moving obstacles.
 
     Example: kbga-bench generate scattered --obstacles 300 --seed 7 --output s300.geojson
     """
     from suite.scene_file import check_scene_file, write_scene
+    from suite.scenes.moving import moving
     from suite.scenes.scattered import scattered
 
+    if (obstacles is None) != (generator is Generator.MOVING):
+        rule = "Leave it out" if generator is Generator.MOVING else "Give it"
+        raise typer.BadParameter(f"{rule} for {generator} scenes.", param_hint="--obstacles")
     check_scene_file(output)
-    draw = {Generator.SCATTERED: scattered}[generator]
-    write_scene(draw(obstacles, seed), output)
+    write_scene(moving(seed) if obstacles is None else scattered(obstacles, seed), output)
     typer.echo(output)
 
 

@@ -11,6 +11,7 @@ from suite.scenes.catalogue import (
     scene_file,
     scene_names,
 )
+from suite.scenes.moving import parse_moving_name
 from suite.scenes.scattered import parse_scattered_name
 
 
@@ -39,7 +40,8 @@ def scenes_listing() -> list[dict[str, Any]]:
         )
     for name in generated_names():
         parts, _ = parse_scattered_name(name) or (None, None)
-        known = {"name": name, "parts": parts, "generated": True, "dynamic": False}
+        is_dynamic = parse_moving_name(name) is not None
+        known = {"name": name, "parts": parts, "generated": True, "dynamic": is_dynamic}
         rows.append(dict.fromkeys(rows[0]) | known)
     return rows
 

@@ -204,8 +204,8 @@ def test_an_unknown_name_is_answered_with_the_catalogue_and_the_nearest_name():
     assert str(error.value) == (
         "no scene 'mase'. Catalogue: unstructured, maze, zigzag, double_u, clustered, "
         "obstacles_20, obstacles_30, obstacles_40. Dynamic: door, unknown_obstacles. Generated: "
-        "scattered_100, scattered_300, scattered_1000, scattered_3000, or scattered_N-S for N "
-        "obstacles and seed S. "
+        "scattered_100, scattered_300, scattered_1000, scattered_3000, moving-0, or scattered_N-S "
+        "for N obstacles and seed S, moving-S for seed S. "
         "Did you mean 'maze'?"
     )
 
@@ -241,7 +241,7 @@ def test_a_generated_name_out_of_range_says_the_range(name):
 
 
 def test_a_name_that_resembles_nothing_gets_no_suggestion():
-    with pytest.raises(SceneError, match=r"seed S\.$"):
+    with pytest.raises(SceneError, match=r"moving-S for seed S\.$"):
         scene_file("xyzzy")
 
 
