@@ -28,7 +28,7 @@ test: setup
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -m "not slow" -n 2 tests/suite/geometry tests/kbga
 
 test-slow: setup
-	$(BIN)/python -m pytest -q -m slow
+	$(BIN)/python -m pytest -q -m slow -n 2 --dist worksteal
 
 lint: setup
 	$(BIN)/ruff check .

@@ -12,9 +12,8 @@ As a library, with obstacles as shapely polygons or as arrays of vertices, in me
 The paper, sentence by sentence
 -------------------------------
 Y. Hu and S. X. Yang, "A Novel Knowledge-Based Genetic Algorithm for Robot Path Planning in Complex
-Environments", sections II-A to II-D, the parameters of III and the future work of V. Rows marked
-"ours" are choices where the paper is silent. What section II-D says of changing environments is not
-carried out yet.
+Environments", sections II-A to II-D, the parameters and the dynamic environments of III, and the
+future work of V. Rows marked "ours" are choices where the paper is silent.
 
 =====  ===============================================  ============================================
 paper  what it says                                     what carries it out
@@ -161,6 +160,19 @@ II-D   the end: a number of generations is over, or     KBGA.run
 ours   both numbers; and the best counts as unchanged   KBGASettings.max_generations
        only once it is feasible: before, more           KBGASettings.stagnation
        generations are all that helps
+II-D   a dynamic environment: what is sensed is         kbga.plugin.KBGAReplanner
+       checked after a period                           suite.planner.Replanner.update
+II-D   if the environment changed, the population is    KBGA.go_on
+       kept and evaluated again in the new one          kbga.dynamic.restart
+II-D   ... and mutated with a high rate, against its    kbga.dynamic.disturb
+       low diversity                                    KBGASettings.change_mutation_probability
+ours   at the rate of the other operators, once; the    KBGASettings.change_mutation_probability
+       best is spared, so that a change elsewhere       kbga.dynamic.disturb
+       leaves its path as it is
+II-D   from then on it evolves for the new environment  KBGA.run
+ours   until the same stop criteria, counted from the   KBGA.go_on
+       change; the best feasible path is put first, as  kbga.dynamic.put_path
+       cheaper infeasible ones may have driven it out
 III    population size 50                               KBGASettings.population_size
 III    mutation with probability 0.2 per chromosome     KBGASettings.mutation_probability
 III    0.9 for all the other operators                  KBGASettings.crossover_probability
@@ -174,6 +186,10 @@ III    grids of 100 x 100 units                         KBGASettings.resolution
 III    "generations needed"                             KBGA.generation_of_best
 ours   the generation in which the final best was       KBGA.generation_of_best
        found first
+III    a moving robot: its place is the new start,      KBGA.go_on
+       and the path is adjusted to it (III-D)           kbga.dynamic.restart
+ours   nodes that it has passed are dropped: those      kbga.dynamic.restart
+       before the place where it is nearest to a path
 V      future work: a first population built with       KBGASettings.informed_share
        knowledge of the domain                          kbga.evolution.first_population
 V      future work: probabilities of the operators      KBGASettings.adaptation_rate

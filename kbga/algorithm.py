@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kbga.draws import LEAST_BLOCK, left_of, make_draws, refill
-from kbga.encoding import Population, empty_population, path_of
+from kbga.dynamic import disturb, genes_of, most_draws_of_disturbance, put_path, restart
+from kbga.encoding import Population, copy_chromosome, empty_population, path_of
 from kbga.evolution import (
     best_feasible,
     first_population,
@@ -16,7 +17,7 @@ from kbga.evolution import (
     next_children,
 )
 from kbga.measures import GenerationReport, measure
-from kbga.memory import with_room
+from kbga.memory import empty_memory, with_room
 from kbga.operators.detour import make_scratch
 from kbga.problem import make_problem
 from kbga.selection import keep_elite
@@ -53,7 +54,7 @@ class KBGA:
     population : Population
         The current parents; the random first population after construction.
     generation : int
-        Generations done, or under way.
+        Generations done, or under way; since the last change of the environment or the start.
     best_path : (n, 2) float64, metres, the best feasible path so far; None before there is one.
     best_cost : float, its length, metres; infinite before there is one.
     generation_of_best : int, the generation in which it was found.
@@ -85,6 +86,7 @@ class KBGA:
         rng = np.random.default_rng(rng)  # a Generator stays itself
         self.settings = settings
         self._rng = rng
+        self._scene = scene
         self._problem = make_problem(scene.arrangement, scene.bounds, settings.resolution)
         self._rates = rates_of(settings)
         self.population = empty_population(settings.population_size, settings.max_nodes)
@@ -117,16 +119,17 @@ class KBGA:
         self._take_lowest()
 
     def _block_size(self, informed: int) -> int:
-        """Random numbers to draw at once: enough for the first population, and for some pairs."""
+        """Random numbers to draw at once: enough for all that is done at once, and some pairs."""
         settings = self.settings
         first = most_draws_of_first_population(
             settings.population_size, settings.initial_nodes, informed, self._rates
         )
-        return max(LEAST_BLOCK, first, 4 * most_draws_of_a_pair(self._rates))
+        disturbance = most_draws_of_disturbance(settings.population_size)
+        return max(LEAST_BLOCK, first, disturbance, 4 * most_draws_of_a_pair(self._rates))
 
     @property
     def checks(self) -> int:
-        """Collision checks of a segment against the scene so far."""
+        """Collision checks of a segment against the scene, since its last change."""
         return int(self._counter[0])
 
     @property
@@ -192,6 +195,80 @@ class KBGA:
         if lowest < self.lowest_cost:
             self.lowest_cost = lowest
             self.generation_of_lowest = self.generation
+
+    def go_on(self, scene: Scene, start: NDArray[np.float64]) -> None:
+        """Keep the population, in an environment that may have changed, for another start.
+
+        All is evaluated anew, and mutated at a high rate if the scene is another object than
+        before (paper II-D). Generations, checks and the best count from here on; call :meth:`run`
+        to evolve.
+
+        Parameters
+        ----------
+        scene : Scene
+            With the workspace of the one before; the same object if nothing has changed.
+        start : (2,) float64, metres
+            Where the robot is.
+
+        Raises
+        ------
+        ValueError
+            If the workspace is another one: the lattice would be, too.
+        """
+        if scene.bounds != self._scene.bounds:
+            raise ValueError(f"the workspace is {scene.bounds}; it was {self._scene.bounds}")
+        changed = scene is not self._scene
+        self._scene = scene
+        self._keep_best_path()
+        if changed:
+            self._problem = make_problem(scene.arrangement, scene.bounds, self.settings.resolution)
+        else:  # segments that begin at the start are others now
+            self._problem = self._problem._replace(memory=empty_memory())
+        self._counter[0] = 0
+        self.generation = self.generation_of_best = self.generation_of_lowest = 0
+        self.best_path, self.best_cost, self.lowest_cost = None, float("inf"), float("inf")
+        self._reports.clear()
+        x, y = (float(v) for v in start)  # of one type each, whatever the array's
+        penalty = self._rates.penalty
+        restart(self.population, x, y, self._problem, penalty, self._counter)
+        self._take_best(self.population, 0, self._size)
+        if changed:
+            self._disturb()
+            self._take_best(self.population, 0, self._size)
+        self._take_lowest()
+
+    def _keep_best_path(self) -> None:
+        """Put the best feasible path first, at the cost of the worst: of equal ones it is taken.
+
+        The population may have lost it to infeasible ones that cost less.
+        """
+        if self.best_path is None:
+            return
+        worst = int(self.population.chromosomes["cost"].argmax())
+        copy_chromosome(self.population, 0, self.population, worst)
+        lattice = self._problem.lattice
+        genes = genes_of(self.best_path, lattice)
+        put_path(self.population, 0, genes, self.best_path[[0, -1]], lattice)
+
+    def _disturb(self) -> None:
+        best = best_feasible(self.population, 0, self._size)
+        spared = int(self.population.chromosomes["cost"].argmin()) if best < 0 else best
+        probability = float(self.settings.change_mutation_probability)
+        if left_of(self._draws) < most_draws_of_disturbance(self._size):
+            refill(self._draws, self._rng)
+        disturb(
+            self.population,
+            spared,
+            probability,
+            self._problem,
+            self._rates,
+            self._draws,
+            self._counter,
+        )
+
+    @property
+    def _size(self) -> int:
+        return len(self.population.chromosomes)
 
     def report(self) -> GenerationReport:
         """Measures of the current population."""

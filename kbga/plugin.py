@@ -8,8 +8,8 @@ import shapely
 from kbga.algorithm import KBGA
 from kbga.memory import FIRST_SLOTS, empty_memory, with_room
 from kbga.settings import KBGASettings
-from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
-from suite.scene import Query, Scene, make_scene
+from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder, Replanner
+from suite.scene import Query, Scene, make_scene, scene_at
 
 
 class KBGAPlanner(Planner):
@@ -36,36 +36,13 @@ class KBGAPlanner(Planner):
         The trace has a row per generation: best, mean, feasible_share, diversity and checks.
         A budget that ends within a generation ends the run after it.
         """
-
-        def improved(ga: KBGA) -> None:
-            recorder.improved(ga.best_cost, generation=ga.generation, checks=ga.checks)
-
-        def follow(ga: KBGA, _: bool) -> bool:
-            report = ga.report()
-            recorder.describe_generation(
-                {
-                    "generation": report.generation,
-                    "best": report.best,
-                    "mean": report.mean,
-                    "feasible_share": report.feasible_share,
-                    "diversity": report.diversity,
-                    "checks": report.checks,
-                }
-            )
-            return within(budget, ga, recorder)
-
         ga = KBGA(scene, query, self.settings, rng)
         recorder.snapshot("first population", ga.paths() if recorder.keep_snapshots else [])
-        path = ga.run(follow, improved)
-        found = path is not None
-        return Plan(
-            PlanStatus.SOLVED if found else PlanStatus.EXHAUSTED,
-            path,
-            claimed_cost=ga.best_cost if found else ga.lowest_cost,
-            generations=ga.generation,
-            generation_of_best=ga.generation_of_best if found else ga.generation_of_lowest,
-            checks=ga.checks,
-        )
+        return evolved(ga, budget, recorder)
+
+    def replanner(self, rng: np.random.Generator) -> Replanner:
+        """KBGA that keeps its population from plan to plan."""
+        return KBGAReplanner(self.settings, rng)
 
     def warm_up(self) -> None:
         """Compile the kernels, or load them, on a scene that makes every operator work."""
@@ -76,10 +53,64 @@ class KBGAPlanner(Planner):
             {"main": ((1.0, 1.0), (9.0, 1.0))},
         )
         settings = KBGASettings(resolution=10, population_size=10, max_generations=10)
-        KBGA(scene, scene.query(), settings, np.random.default_rng(0)).run(
-            lambda ga, _: ga.report().generation < 10
-        )
+        ga = KBGA(scene, scene.query(), settings, np.random.default_rng(0))
+        ga.run(lambda ga, _: ga.report().generation < 10)
+        # Another object, so that the environment has changed.
+        ga.go_on(scene_at(scene, 0.0), np.array([2.0, 2.0]))
         with_room(empty_memory(), FIRST_SLOTS)  # a run as short as this needs no larger table
+
+
+class KBGAReplanner(Replanner):
+    """KBGA in a dynamic environment (paper II-D): the population lives on from update to update."""
+
+    def __init__(self, settings: KBGASettings, rng: np.random.Generator) -> None:
+        self._settings = settings
+        self._rng = rng
+        self._ga: KBGA | None = None
+
+    def begin(self, scene: Scene, query: Query, budget: Budget, recorder: Recorder) -> Plan:
+        """Evolve a first population."""
+        self._ga = KBGA(scene, query, self._settings, self._rng)
+        return evolved(self._ga, budget, recorder)
+
+    def update(self, scene: Scene, query: Query, budget: Budget, recorder: Recorder) -> Plan:
+        """Go on with the population, in what is known now and from where the robot is."""
+        if self._ga is None:
+            return self.begin(scene, query, budget, recorder)
+        self._ga.go_on(scene, query.start)
+        return evolved(self._ga, budget, recorder)
+
+
+def evolved(ga: KBGA, budget: Budget, recorder: Recorder) -> Plan:
+    """Evolve within a budget and tell the recorder of it; what came of it as a plan."""
+
+    def improved(ga: KBGA) -> None:
+        recorder.improved(ga.best_cost, generation=ga.generation, checks=ga.checks)
+
+    def follow(ga: KBGA, _: bool) -> bool:
+        report = ga.report()
+        recorder.describe_generation(
+            {
+                "generation": report.generation,
+                "best": report.best,
+                "mean": report.mean,
+                "feasible_share": report.feasible_share,
+                "diversity": report.diversity,
+                "checks": report.checks,
+            }
+        )
+        return within(budget, ga, recorder)
+
+    path = ga.run(follow, improved)
+    found = path is not None
+    return Plan(
+        PlanStatus.SOLVED if found else PlanStatus.EXHAUSTED,
+        path,
+        claimed_cost=ga.best_cost if found else ga.lowest_cost,
+        generations=ga.generation,
+        generation_of_best=ga.generation_of_best if found else ga.generation_of_lowest,
+        checks=ga.checks,
+    )
 
 
 def within(budget: Budget, ga: KBGA, recorder: Recorder) -> bool:

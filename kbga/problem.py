@@ -61,7 +61,8 @@ def make_problem(
     """
     lattice = make_lattice(bounds, resolution)
     groups = len(arrangement.arrays.groups)
-    corners = np.ascontiguousarray(arrangement.corners[:, :2])
+    # Always a copy: a view would be read-only where there are no corners, another type to numba.
+    corners = np.array(arrangement.corners[:, :2], order="C")
     return Problem(
         arrangement.arrays,
         lattice,

@@ -25,6 +25,9 @@ class KBGASettings:
         the paper).
     crossover_probability : per pair of parents (paper III: 0.9).
     mutation_probability : per chromosome (paper III: 0.2).
+    change_mutation_probability : per chromosome, once, when the environment has changed (paper
+        II-D: "mutation with high mutation rate", ours: that of the other operators. The best
+        chromosome is spared, so that a change elsewhere leaves its path as it is).
     repair_probability : per infeasible chromosome (paper III: 0.9).
     deletion_probability : per chromosome (paper III: 0.9).
     improvement_probability : per feasible chromosome (paper III: 0.9).
@@ -56,6 +59,7 @@ class KBGASettings:
     informed_share: float = 0.0
     crossover_probability: float = 0.9
     mutation_probability: float = 0.2
+    change_mutation_probability: float = 0.9
     repair_probability: float = 0.9
     deletion_probability: float = 0.9
     improvement_probability: float = 0.9
@@ -85,7 +89,14 @@ class KBGASettings:
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < low:
                 raise ValueError(f"{name} is {value!r}; it must be a whole number, {low} or more")
-        operators = ("crossover", "mutation", "repair", "deletion", "improvement")
+        operators = (
+            "crossover",
+            "mutation",
+            "change_mutation",
+            "repair",
+            "deletion",
+            "improvement",
+        )
         shares = [f"{operator}_probability" for operator in operators]
         for name in (*shares, "informed_share", "adaptation_rate"):
             value = getattr(self, name)

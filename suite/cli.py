@@ -47,6 +47,7 @@ class Generator(StrEnum):
     """What scenes can be drawn from a seed."""
 
     SCATTERED = "scattered"
+    MOVING = "moving"
 
 
 class TextFormat(StrEnum):
@@ -54,6 +55,13 @@ class TextFormat(StrEnum):
 
     TEXT = "text"
     JSON = "json"
+
+
+class Charge(StrEnum):
+    """What simulated time planning takes; see :class:`suite.dynamic.settings.Charge`."""
+
+    MEASURED = "measured"
+    ZERO = "zero"
 
 
 class TableFormat(StrEnum):
@@ -113,22 +121,29 @@ def list_command(
 @app.command()
 def generate(
     generator: Annotated[Generator, typer.Argument(help="Kind of scene.")],
-    obstacles: Annotated[int, typer.Option(help="Number of obstacles, counted as convex parts.")],
     output: Annotated[Path, typer.Option(metavar="FILE", help="Scene file: .geojson or .json.")],
+    obstacles: Annotated[
+        int | None,
+        typer.Option(help="Number of scattered obstacles, counted as convex parts."),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Another seed gives another scene.")] = 0,
 ) -> None:
     """Draw a scene from a seed and write it to a file.
 
-    Without a file, `scattered_300-7` names the same scene wherever a scene is asked for.
+    Without a file, `scattered_300-7` names the same scene wherever a scene is asked for, and
+    `moving-7` the one of moving obstacles.
 
     Example: kbga-bench generate scattered --obstacles 300 --seed 7 --output s300.geojson
     """
     from suite.scene_file import check_scene_file, write_scene
+    from suite.scenes.moving import moving
     from suite.scenes.scattered import scattered
 
+    if (obstacles is None) != (generator is Generator.MOVING):
+        rule = "Leave it out" if generator is Generator.MOVING else "Give it"
+        raise typer.BadParameter(f"{rule} for {generator} scenes.", param_hint="--obstacles")
     check_scene_file(output)
-    draw = {Generator.SCATTERED: scattered}[generator]
-    write_scene(draw(obstacles, seed), output)
+    write_scene(moving(seed) if obstacles is None else scattered(obstacles, seed), output)
     typer.echo(output)
 
 
@@ -212,6 +227,81 @@ def plan(
     else:
         typer.echo(as_text(record))
     raise typer.Exit(0 if succeeded(record) else 1)
+
+
+@app.command()
+def simulate(
+    scene: SceneArgument,
+    planner: Annotated[str, typer.Option(help="Name of the planner; see `list planners`.")],
+    seed: Annotated[int, typer.Option(min=0, help="Of the random stream.")] = 0,
+    query: Annotated[str | None, typer.Option(help="Name of the query; default: the first.")] = (
+        None
+    ),
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="A setting of the planner; repeatable."),
+    ] = None,
+    cold: Annotated[
+        bool, typer.Option("--cold", help="Plan afresh at every update, whatever the planner can.")
+    ] = False,
+    speed: Annotated[float | None, typer.Option(help="Of the robot, metres per second.")] = None,
+    interval: Annotated[float | None, typer.Option(help="Seconds between updates.")] = None,
+    sensing_range: Annotated[
+        float | None, typer.Option(help="Metres within which unknown obstacles are detected.")
+    ] = None,
+    obstacle_speed_factor: Annotated[
+        float | None, typer.Option(help="All obstacles move so many times as fast.")
+    ] = None,
+    time_limit: Annotated[
+        float | None, typer.Option(help="Simulated seconds after which the run ends.")
+    ] = None,
+    charge: Annotated[
+        Charge, typer.Option(help="Simulated time that planning takes: its own, or none.")
+    ] = Charge.MEASURED,
+    wall_s: Annotated[float | None, typer.Option(help="Budget of each plan: seconds.")] = None,
+    generations: Annotated[
+        int | None, typer.Option(help="Budget of each plan: generations or iterations.")
+    ] = None,
+    checks: Annotated[
+        int | None, typer.Option(help="Budget of each plan: collision checks.")
+    ] = None,
+    style: Annotated[TextFormat, typer.Option("--format", help="For people or programs.")] = (
+        TextFormat.TEXT
+    ),
+) -> None:
+    """Let a robot find its way through a dynamic scene, planning anew as it goes.
+
+    Exit code 0 if it reached the goal and was never hit, 1 otherwise.
+
+    Example: kbga-bench simulate door --planner kbga --seed 3 --speed 5
+    """
+    from suite.dynamic.single import Wanted, as_data, as_text, run_single, unhurt
+    from suite.harness.single import parse_settings
+    from suite.planner import Budget
+
+    wanted = Wanted(
+        scene,
+        planner,
+        seed,
+        query=query,
+        cold=cold,
+        settings=parse_settings(settings or []),
+        world={
+            "speed": speed,
+            "interval": interval,
+            "sensing_range": sensing_range,
+            "obstacle_speed_factor": obstacle_speed_factor,
+            "time_limit": time_limit,
+            "charge": charge.value,
+        },
+        budget=Budget(wall_s, generations, checks),
+    )
+    done = run_single(wanted)
+    if style is TextFormat.JSON:
+        _print_json(as_data(wanted, done))
+    else:
+        typer.echo(as_text(wanted, done))
+    raise typer.Exit(0 if unhurt(done) else 1)
 
 
 @app.command()

@@ -4,17 +4,25 @@ from typing import Any
 
 from suite.harness.matrix import load_matrix, matrix_file, matrix_names
 from suite.plugins import available_planners
-from suite.scenes.catalogue import generated_names, load_scene, scene_file, scene_names
+from suite.scenes.catalogue import (
+    dynamic_names,
+    generated_names,
+    load_scene,
+    scene_file,
+    scene_names,
+)
+from suite.scenes.moving import parse_moving_name
 from suite.scenes.scattered import parse_scattered_name
 
 
 def scenes_listing() -> list[dict[str, Any]]:
     """Each scene of the catalogue: name, obstacles, vertices, parts, optimum (m), figure, path.
 
+    Dynamic ones are listed as they are drawn; their optimum changes as they do.
     Of generated scenes it says what their names say: to draw them all takes seconds.
     """
     rows: list[dict[str, Any]] = []
-    for name in scene_names():
+    for name in (*scene_names(), *dynamic_names()):
         scene = load_scene(name)
         rows.append(
             {
@@ -26,12 +34,14 @@ def scenes_listing() -> list[dict[str, Any]]:
                 "queries": [query.name for query in scene.queries],
                 "figure": scene.properties.get("figure"),
                 "generated": False,
+                "dynamic": scene.is_dynamic,
                 "path": str(scene_file(name)),
             }
         )
     for name in generated_names():
         parts, _ = parse_scattered_name(name) or (None, None)
-        known = {"name": name, "parts": parts, "generated": True}
+        is_dynamic = parse_moving_name(name) is not None
+        known = {"name": name, "parts": parts, "generated": True, "dynamic": is_dynamic}
         rows.append(dict.fromkeys(rows[0]) | known)
     return rows
 

@@ -12,6 +12,9 @@ A planner is a class with one method, ``plan``. It is found by an entry point of
 
 The harness calls ``warm_up`` outside the clock, then ``plan`` inside it; a referee judges the path
 afterwards, outside the clock, and believes nothing that the plan claims.
+
+In a dynamic scene the robot plans again and again as it moves. Every planner can: it plans afresh
+each time. One that keeps what it knows from one time to the next overrides ``replanner``.
 """
 
 import time
@@ -225,6 +228,16 @@ class Planner(ABC):
     def warm_up(self) -> None:  # noqa: B027 (optional: empty by default)
         """Compile and import whatever the first ``plan`` would; called outside the clock."""
 
+    def replanner(self, rng: np.random.Generator) -> "Replanner":
+        """Something that plans anew while the robot moves; by default it plans afresh each time.
+
+        Parameters
+        ----------
+        rng : numpy.random.Generator
+            The only source of randomness, for the whole run.
+        """
+        return PlanAfresh(self, rng)
+
     def refuse(  # the default refuses nothing
         self,
         scene: Scene,  # noqa: ARG002
@@ -233,3 +246,46 @@ class Planner(ABC):
     ) -> str | None:
         """A sentence that says why this planner can't do this run; None if it can."""
         return None
+
+
+class Replanner(ABC):
+    """Plans anew while the robot moves: one object for one run. The clock surrounds each call.
+
+    Both methods take what :meth:`Planner.plan` takes. The scene is static, as the robot knows it
+    at that moment; the query leads from where the robot is to the goal, which stays the same.
+    """
+
+    @abstractmethod
+    def begin(self, scene: Scene, query: Query, budget: Budget, recorder: Recorder) -> Plan:
+        """Make the first plan. Called once, before any update."""
+
+    @abstractmethod
+    def update(self, scene: Scene, query: Query, budget: Budget, recorder: Recorder) -> Plan:
+        """Plan from where the robot is now, in what it knows now.
+
+        ``scene`` is the same object as in the call before if nothing that the robot knows has
+        changed. Without a path in the plan, the robot keeps its old one if that is free, or waits.
+        """
+
+
+class PlanAfresh(Replanner):
+    """Any planner as a replanner: each time it plans as if for the first time.
+
+    Parameters
+    ----------
+    planner : Planner
+    rng : numpy.random.Generator
+        Its stream goes on from plan to plan.
+    """
+
+    def __init__(self, planner: Planner, rng: np.random.Generator) -> None:
+        self._planner = planner
+        self._rng = rng
+
+    def begin(self, scene: Scene, query: Query, budget: Budget, recorder: Recorder) -> Plan:
+        """Plan."""
+        return self._planner.plan(scene, query, budget, self._rng, recorder)
+
+    def update(self, scene: Scene, query: Query, budget: Budget, recorder: Recorder) -> Plan:
+        """Plan afresh."""
+        return self._planner.plan(scene, query, budget, self._rng, recorder)

@@ -7,8 +7,8 @@ already in the obstacles (paper section II-A), or are added by ``inflate``.
 import hashlib
 import json
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
@@ -18,9 +18,11 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
+from shapely.affinity import translate
 from shapely.geometry import LinearRing, LineString, Polygon
 from shapely.validation import explain_validity
 
+from suite.dynamics import Dynamics, as_text
 from suite.errors import SceneError
 from suite.geometry.arrangement import Arrangement, arrange
 from suite.geometry.kernels import PARTS, ObstacleArrays
@@ -48,19 +50,32 @@ class Query:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Obstacle:
-    """An obstacle as its author drew it: a polygon, convex or concave, maybe with holes."""
+    """An obstacle as its author drew it: a polygon, convex or concave, maybe with holes.
+
+    dynamics : how it changes over time; None if it is static.
+    """
 
     name: str
     polygon: Polygon
+    dynamics: Dynamics | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is ever anywhere else than where it is drawn."""
+        return self.dynamics is not None and self.dynamics.motion is not None
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
     """A workspace, its obstacles and its queries. Built by :func:`make_scene`, then immutable.
 
+    Whoever asks for its geometry sees obstacles as they are drawn: all known, none moving. What a
+    dynamic scene is like at a time, :func:`scene_at` says.
+
     name : str
     workspace : Polygon without holes, metres.
-    obstacles : tuple of Obstacle, inside the workspace; they may touch and overlap.
+    obstacles : tuple of Obstacle, inside the workspace, but for those that move, whose drawing may
+        stick out; they may touch and overlap.
     queries : tuple of Query, at least one.
     properties : read-only mapping, what the scene file says about itself.
     path : the file that the scene came from, or None.
@@ -87,7 +102,10 @@ class Scene:
     @cached_property
     def arrangement(self) -> Arrangement:
         """The plane divided into free space, obstacle groups and the frame."""
-        return arrange(self.workspace, [o.polygon for o in self.obstacles])
+        return arrange(
+            self.workspace,
+            [p for o in self.obstacles for p in _inside(self.workspace, o.polygon, o.moves)],
+        )
 
     @property
     def arrays(self) -> ObstacleArrays:
@@ -98,7 +116,14 @@ class Scene:
     def hash(self) -> str:
         """Hash of workspace and obstacles: what a result depends on, whatever the name says."""
         content = [self.workspace.wkb_hex, *(o.polygon.wkb_hex for o in self.obstacles)]
+        dynamics = [(i, o.dynamics) for i, o in enumerate(self.obstacles)]
+        content += [f"{i} {as_text(changes)}" for i, changes in dynamics if changes is not None]
         return hashlib.sha256("\n".join(content).encode()).hexdigest()[:16]
+
+    @property
+    def is_dynamic(self) -> bool:
+        """Whether any of its obstacles is not static."""
+        return any(o.dynamics is not None for o in self.obstacles)
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -200,7 +225,7 @@ def make_scene(
     where = path.name if path is not None else name
     room = _as_polygon(where, "workspace", workspace)
     named = [
-        Obstacle(o.name, _as_polygon(where, o.name, o.polygon))
+        Obstacle(o.name, _as_polygon(where, o.name, o.polygon), o.dynamics)
         if isinstance(o, Obstacle)
         else Obstacle(f"obstacle {i}", _as_polygon(where, f"obstacle {i}", o))
         for i, o in enumerate(obstacles, 1)
@@ -334,14 +359,10 @@ def _normalise(
     kept: list[Obstacle] = []
     for obstacle in (*obstacles, *holes):
         polygon = obstacle.polygon.buffer(inflate) if inflate > 0.0 else obstacle.polygon
-        if reach.covers(polygon):
-            kept.append(Obstacle(obstacle.name, polygon))
+        if obstacle.moves or reach.covers(polygon):
+            kept.append(Obstacle(obstacle.name, polygon, obstacle.dynamics))
             continue
-        pieces = [
-            p
-            for p in shapely.get_parts(room.intersection(polygon))
-            if isinstance(p, Polygon) and p.area > 0.0
-        ]
+        pieces = _inside(room, polygon)
         if inflate == 0.0:
             warnings.warn(
                 f"{where}, {obstacle.name}: sticks out of the workspace and was cut at its border"
@@ -351,8 +372,16 @@ def _normalise(
             )
         for i, piece in enumerate(pieces, 1):
             suffix = f" ({i})" if len(pieces) > 1 else ""
-            kept.append(Obstacle(obstacle.name + suffix, piece))
+            kept.append(Obstacle(obstacle.name + suffix, piece, obstacle.dynamics))
     return room, kept
+
+
+def _inside(room: Polygon, polygon: Polygon, cut: bool = True) -> list[Polygon]:
+    """The pieces of a polygon within a workspace; the polygon itself if it need not be cut."""
+    if not cut:
+        return [polygon]
+    pieces = shapely.get_parts(room.intersection(polygon))
+    return [p for p in pieces if isinstance(p, Polygon) and p.area > 0.0]
 
 
 def _as_query(where: str, name: str, ends: tuple[ArrayLike, ArrayLike]) -> Query:
@@ -402,6 +431,57 @@ def _check_free(where: str, scene: Scene, what: str, point: NDArray[np.float64])
             f"{where}, {what}: ({point[0]:g}, {point[1]:g}) lies inside {' and '.join(names)}. "
             "Move it to free space."
         )
+
+
+def scene_at(scene: Scene, time: float, without: Collection[str] = ()) -> Scene:
+    """The static scene that a dynamic one is at a time.
+
+    Parameters
+    ----------
+    scene : Scene
+    time : float
+        Seconds. Obstacles are where they are then; those that are not there then are left out.
+    without : names of obstacles
+        To be left out too: what is not known yet, or what the robot's coming has removed.
+
+    Returns
+    -------
+    Scene
+        Its queries are those of the scene; their ends may lie in an obstacle at that time.
+
+    Examples
+    --------
+    >>> from suite.dynamics import Dynamics, constant_speed
+    >>> door = Obstacle("door", shapely.box(0, 4, 2, 5), Dynamics(constant_speed((1, 0), 0, 5)))
+    >>> scene = make_scene("hall", shapely.box(0, 0, 9, 9), [door], ((1, 1), (1, 8)))
+    >>> scene_at(scene, 3.0).obstacles[0].polygon.bounds
+    (3.0, 4.0, 5.0, 5.0)
+    """
+    obstacles = [
+        at_time
+        for o in scene.obstacles
+        if o.name not in without
+        for at_time in _obstacle_at(scene.workspace, o, time)
+    ]
+    return replace(scene, obstacles=tuple(obstacles))
+
+
+def _obstacle_at(room: Polygon, obstacle: Obstacle, time: float) -> list[Obstacle]:
+    """An obstacle as it is at a time: in pieces where the border cuts it, or not there at all."""
+    dynamics = obstacle.dynamics
+    if dynamics is None:
+        return [obstacle]
+    if not dynamics.is_there(time):
+        return []
+    polygon = translate(obstacle.polygon, *dynamics.offset(time))
+    cut = obstacle.moves and not room.covers(polygon)
+    pieces = _inside(room, polygon, cut)
+    names = [obstacle.name] if len(pieces) == 1 else _numbered(obstacle.name, len(pieces))
+    return [Obstacle(name, piece) for name, piece in zip(names, pieces, strict=True)]
+
+
+def _numbered(name: str, count: int) -> list[str]:
+    return [f"{name} ({i})" for i in range(1, count + 1)]
 
 
 def scene_fingerprint(scene: Scene, query: Query) -> str:

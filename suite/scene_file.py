@@ -9,15 +9,35 @@ Coordinates are metres in the plane, x right, y up; no projection applies. Each 
     One Polygon: where the robot may be. A hole in it is an obstacle.
 ``obstacle``
     Polygon or MultiPolygon, convex or concave, with holes if need be; they may touch and overlap.
-    ``properties.name`` is optional and unique.
+    ``properties.name`` is optional and unique. Without the properties below it is static; with any
+    of them it is part of a dynamic scene, and the polygon is where it is drawn, not where it is.
 ``start``, ``goal``
     A Point each. Several pairs make several queries: ``properties.query`` names the pair
     (default ``main``).
 
+Properties of an obstacle that changes over time (seconds from the start of a run, metres):
+
+``motion``
+    ``{"waypoints": [[t, dx, dy], ...]}``: it is moved by (dx, dy) from where it is drawn at the
+    time t, along straight lines at constant speed between the waypoints, and rests before the first
+    and after the last. ``{"velocity": [vx, vy], "start": t0, "stop": t1}`` is short for a line
+    (``start`` is 0 if left out).
+``detection``
+    ``{"range": r}``: it is there, but unknown until the robot is within r metres of its edge at an
+    update. ``{}`` takes the sensing range of the robot.
+``removal``
+    ``{"time": t}``, or ``{"place": [x, y], "distance": d}``: it vanishes at the time, or as soon as
+    the robot is within d metres of the place; of both, at what comes first.
+``appears``
+    A time, before which it is not there.
+
 Members of the collection that the suite reads: ``name`` (default: the file's name) and
 ``properties``, an object of which it knows ``description``, ``figure``, ``paper_best``,
-``reconstruction`` and ``optimum`` (from query name to exact optimal length, metres). Others are
-kept. Any JSON, GIS or shapely tool reads the file.
+``reconstruction`` and ``optimum`` (from query name to exact optimal length, metres); of a dynamic
+scene also ``world``, the default settings of its simulation (see
+:class:`suite.dynamic.settings.WorldSettings`), and ``gates``, from a name to a segment
+``[[x, y], [x, y]]`` across an opening, so that a run can say which one the robot passed. Others
+are kept. Any JSON, GIS or shapely tool reads the file.
 """
 
 import json
@@ -27,6 +47,7 @@ from typing import Any
 
 from shapely.geometry import Polygon, mapping
 
+from suite.dynamics import as_properties, parse_dynamics
 from suite.errors import SceneError
 from suite.geometry.tolerances import LARGEST
 from suite.scene import DEFAULT_QUERY, Obstacle, Scene, make_scene
@@ -137,9 +158,13 @@ def _obstacle(
 ) -> list[Obstacle]:
     name = str(properties.get("name", f"obstacle {number}"))
     polygons = _polygons(where, name, geometry)
+    try:
+        dynamics = parse_dynamics(properties)
+    except SceneError as error:
+        raise SceneError(f"{where}, {name}: {error}") from error
     if len(polygons) == 1:
-        return [Obstacle(name, polygons[0])]
-    return [Obstacle(f"{name}, polygon {i}", p) for i, p in enumerate(polygons, 1)]
+        return [Obstacle(name, polygons[0], dynamics)]
+    return [Obstacle(f"{name}, polygon {i}", p, dynamics) for i, p in enumerate(polygons, 1)]
 
 
 def _polygons(where: str, what: str, geometry: Any) -> list[Polygon]:
@@ -231,7 +256,9 @@ def write_scene(scene: Scene, path: Path) -> None:
     """
     features = [_as_feature({"role": "workspace"}, mapping(scene.workspace))]
     features += [
-        _as_feature({"role": "obstacle", "name": o.name}, mapping(o.polygon))
+        _as_feature(
+            {"role": "obstacle", "name": o.name, **as_properties(o.dynamics)}, mapping(o.polygon)
+        )
         for o in scene.obstacles
     ]
     for query in scene.queries:
@@ -247,5 +274,5 @@ def write_scene(scene: Scene, path: Path) -> None:
         raise SceneError(f"{path}: can't be written ({error.strerror}).") from error
 
 
-def _as_feature(properties: Mapping[str, str], geometry: Mapping[str, Any]) -> dict[str, Any]:
+def _as_feature(properties: Mapping[str, Any], geometry: Mapping[str, Any]) -> dict[str, Any]:
     return {"type": "Feature", "properties": dict(properties), "geometry": dict(geometry)}

@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("suite", "kbga", "baselines")
 FLOORS = (
     {"compiled", "errors", "geometry", "quiet"},
-    {"scene", "scene_file", "exact"},
+    {"dynamics", "scene", "scene_file", "exact"},
     {"planner", "plugins"},
     {"scenes", "record", "referee"},
     {"conformance", "store"},

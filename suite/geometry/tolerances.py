@@ -17,3 +17,8 @@ OPTIMUM_RELATIVE = 1e-5
 
 COST_CLAIM_RELATIVE = 1e-6
 """How far a planner's own cost may lie from the referee's before the row says that they differ."""
+
+HIT_DEPTH = 1e-6
+"""How deep a robot must be in an obstacle to be hit by it (metres). A robot that stops on its way
+along a slanted wall can't stand exactly on it, and a moved obstacle is rounded where it is drawn
+anew: both are a thousandth of this. Nothing that a robot could notice is less deep."""

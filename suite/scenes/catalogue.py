@@ -2,7 +2,8 @@
 
 The files are reconstructions of the environments in Hu and Yang's paper, whose figures are not
 available: each file says so, names its figure, and states the exact optimum of its query. The
-others are scattered scenes, for studies with more obstacles than the paper's.
+others are scattered scenes, for studies with more obstacles than the paper's, and moving scenes,
+for claims about any dynamic scene.
 """
 
 import os
@@ -12,6 +13,7 @@ from pathlib import Path
 from suite.errors import SceneError
 from suite.scene import Scene, make_scene
 from suite.scene_file import SUFFIXES, read_scene
+from suite.scenes.moving import moving, moving_name, parse_moving_name
 from suite.scenes.scattered import parse_scattered_name, scattered, scattered_name
 
 _FOLDER = Path(__file__).parent
@@ -25,6 +27,7 @@ _PAPER_ORDER = (
     "obstacles_30",
     "obstacles_40",
 )
+_DYNAMIC = ("door", "unknown_obstacles")
 _SCATTERED = (100, 300, 1000, 3000)
 """Obstacles of the scattered scenes that are listed; other numbers and seeds need no list."""
 
@@ -45,23 +48,40 @@ def scene_names() -> list[str]:
     return list(_PAPER_ORDER)
 
 
-def generated_names() -> list[str]:
-    """Names of the generated scenes that studies use.
-
-    There are more: ``scattered_N-S`` has N obstacles and the seed S, ``scattered_N`` the seed 0;
-    see :func:`suite.scenes.scattered.scattered`.
+def dynamic_names() -> list[str]:
+    """Names of the dynamic scenes of the catalogue, whose obstacles move, hide and vanish.
 
     Returns
     -------
     list of str
-        By number of obstacles.
+        In the order in which the paper shows their environments.
+
+    Examples
+    --------
+    >>> dynamic_names()
+    ['door', 'unknown_obstacles']
+    """
+    return list(_DYNAMIC)
+
+
+def generated_names() -> list[str]:
+    """Names of the generated scenes that studies use, and of one whose obstacles move.
+
+    There are more: ``scattered_N-S`` has N obstacles and the seed S, ``scattered_N`` the seed 0,
+    see :func:`suite.scenes.scattered.scattered`; ``moving-S`` is dynamic and has the seed S, see
+    :func:`suite.scenes.moving.moving`.
+
+    Returns
+    -------
+    list of str
+        By number of obstacles; the dynamic one last.
 
     Examples
     --------
     >>> generated_names()[0]
     'scattered_100'
     """
-    return [scattered_name(obstacles, 0) for obstacles in _SCATTERED]
+    return [*(scattered_name(obstacles, 0) for obstacles in _SCATTERED), moving_name(0)]
 
 
 def has_scene(name: str) -> bool:
@@ -72,7 +92,7 @@ def has_scene(name: str) -> bool:
     >>> has_scene("maze"), has_scene("scattered_50-7"), has_scene("maze.geojson")
     (True, True, False)
     """
-    return name in _PAPER_ORDER or parse_scattered_name(name) is not None
+    return name in _PAPER_ORDER + _DYNAMIC or _is_generated(name)
 
 
 def scene_file(name: str) -> Path:
@@ -81,7 +101,7 @@ def scene_file(name: str) -> Path:
     Parameters
     ----------
     name : str
-        One of :func:`scene_names`.
+        One of :func:`scene_names` or :func:`dynamic_names`.
 
     Returns
     -------
@@ -92,11 +112,11 @@ def scene_file(name: str) -> Path:
     SceneError
         If the catalogue has no file of that name.
     """
-    if parse_scattered_name(name) is not None:
+    if _is_generated(name):
         raise SceneError(
             f"{name}: is generated and has no file. Write one with `kbga-bench generate`."
         )
-    if name not in _PAPER_ORDER:
+    if name not in _PAPER_ORDER + _DYNAMIC:
         raise SceneError(_unknown(name))
     return _FOLDER / f"{name}.geojson"
 
@@ -107,8 +127,9 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
     Parameters
     ----------
     name_or_path : str or Path
-        One of :func:`scene_names` or :func:`generated_names`, or a scene file. A string with a
-        path separator or with the suffix of a scene file (``.geojson``, ``.json``) is a path.
+        One of :func:`scene_names`, :func:`dynamic_names` or :func:`generated_names`, or a scene
+        file. A string with a path separator or with the suffix of a scene file (``.geojson``,
+        ``.json``) is a path.
     inflate : float
         Radius of the robot, metres; see :func:`suite.scene.make_scene`.
 
@@ -128,10 +149,10 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
     """
     if _is_path(name_or_path):
         return read_scene(Path(name_or_path), inflate=inflate)
-    numbers = parse_scattered_name(str(name_or_path))
-    if numbers is not None:
-        return _inflated(scattered(*numbers), inflate)
-    return read_scene(scene_file(str(name_or_path)), inflate=inflate)
+    name = str(name_or_path)
+    if _is_generated(name):
+        return _inflated(_generated(name), inflate)
+    return read_scene(scene_file(name), inflate=inflate)
 
 
 def _is_path(name_or_path: str | Path) -> bool:
@@ -140,6 +161,15 @@ def _is_path(name_or_path: str | Path) -> bool:
     separators = (os.sep, os.altsep) if os.altsep else (os.sep,)
     has_separator = any(s in name_or_path for s in separators)
     return has_separator or Path(name_or_path).suffix.lower() in SUFFIXES
+
+
+def _is_generated(name: str) -> bool:
+    return parse_scattered_name(name) is not None or parse_moving_name(name) is not None
+
+
+def _generated(name: str) -> Scene:
+    numbers = parse_scattered_name(name)
+    return scattered(*numbers) if numbers is not None else moving(parse_moving_name(name) or 0)
 
 
 def _inflated(scene: Scene, inflate: float) -> Scene:
@@ -157,8 +187,9 @@ def _inflated(scene: Scene, inflate: float) -> Scene:
 
 def _unknown(name: str) -> str:
     message = (
-        f"no scene '{name}'. Catalogue: {', '.join(_PAPER_ORDER)}. "
-        f"Generated: {', '.join(generated_names())}, or scattered_N-S for N obstacles and seed S."
+        f"no scene '{name}'. Catalogue: {', '.join(_PAPER_ORDER)}. Dynamic: {', '.join(_DYNAMIC)}. "
+        f"Generated: {', '.join(generated_names())}, or scattered_N-S for N obstacles and seed S, "
+        "moving-S for seed S."
     )
-    nearest = get_close_matches(name, [*_PAPER_ORDER, *generated_names()], n=1)
+    nearest = get_close_matches(name, [*_PAPER_ORDER, *_DYNAMIC, *generated_names()], n=1)
     return message + (f" Did you mean '{nearest[0]}'?" if nearest else "")

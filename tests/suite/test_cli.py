@@ -13,8 +13,13 @@ from dataclasses import dataclass
 
 import psutil
 import pytest
+import shapely
 
 from suite.cli import main
+from suite.dynamics import Dynamics, constant_speed
+from suite.scene import Obstacle, make_scene
+from suite.scene_file import read_scene, write_scene
+from suite.scenes.catalogue import load_scene
 from suite.store import read_paths, read_runs
 
 COMMAND = [sys.executable, "-c", "from suite.cli import main; main()"]
@@ -93,6 +98,8 @@ def test_lists_are_json_for_programs(kbga_bench):
     scattered = next(scene for scene in scenes if scene["name"] == "scattered_300")
     assert (scattered["generated"], scattered["parts"], scattered["path"]) == (True, 300, None)
     assert set(scattered) == set(zigzag)
+    dynamic = [scene["name"] for scene in scenes if scene["dynamic"]]
+    assert dynamic == ["door", "unknown_obstacles", "moving-0"]
     matrices = json.loads(kbga_bench("list", "matrices", "--format", "json").out)
     paper = next(matrix for matrix in matrices if matrix["name"] == "paper-static")
     assert paper["runs"] == 8 * 6 * 20
@@ -106,6 +113,83 @@ def test_a_plugin_that_cannot_be_imported_is_listed_with_the_reason(kbga_bench, 
     assert "wanderer" in kbga_bench("list", "planners").out
 
 
+SIMULATE = ("simulate", "door", "--planner", "kbga", "--charge", "zero")
+
+
+def test_a_simulation_says_how_the_robot_fared_as_json_and_in_words(kbga_bench):
+    arguments = (*SIMULATE, "--seed", 3, "--speed", 5)
+    done = json.loads(kbga_bench(*arguments, "--format", "json").out)
+    assert (done["reached"], done["hits"], done["opening"]) == (True, [], "right")
+    assert done["world"]["speed"] == 5.0
+    first, *_, last = done["trajectory"]
+    assert (first, last) == ([0.0, 70.0, 6.0], [done["time"], 88.0, 94.0])
+    assert {"time", "latency_s", "cost", "status"} <= set(done["replans"][0])
+    assert done["waiting_time"] == 0.0
+    said = kbga_bench(*arguments).out
+    assert said.startswith("door / kbga / seed 3: reached\n  hit          never\n")
+    assert "openings     right at" in said
+
+
+@pytest.mark.parametrize(
+    "press",
+    [
+        Obstacle("press", shapely.box(0, 6, 3, 9), Dynamics(constant_speed((0.0, -1.0), 0.0, 4.0))),
+        Obstacle("press", shapely.box(0, 2, 3, 4), Dynamics(appears=3.0)),
+    ],
+    ids=["moves onto it", "appears on it"],
+)
+def test_an_obstacle_that_comes_upon_a_waiting_robot_is_reported(kbga_bench, tmp_path, press):
+    file = tmp_path / "press.geojson"
+    wall = shapely.box(4, 0, 6, 10)
+    ends = ((1, 3), (9, 3))
+    write_scene(make_scene("press", shapely.box(0, 0, 10, 10), [wall, press], ends), file)
+    simulate = ("simulate", file, "--planner", "visibility-graph", "--time-limit", 9)
+    done = json.loads(kbga_bench(*simulate, "--format", "json", code=1).out)
+    (hit,) = done["hits"]
+    assert (hit["obstacle"], hit["place"]) == ("press", [1.0, 3.0])
+    assert hit["time"] == pytest.approx(3.0, abs=1e-5)
+    assert "hit          by press at 3.00 s in (1.000, 3.000)" in kbga_bench(*simulate, code=1).out
+
+
+@pytest.mark.parametrize("scene", ["door", "unknown_obstacles", "moving-3"])
+def test_two_processes_give_the_same_trajectory_bit_for_bit_when_planning_is_free(scene):
+    wanted = ("simulate", scene, *SIMULATE[2:], "--seed", 3, "--format", "json")
+    one, same = (json.loads(in_own_process(*wanted).out) for _ in range(2))
+    assert len(one["trajectory"]) > 3
+    # JSON holds every bit of a float: repr is the shortest text that gives it back.
+    assert json.dumps(one["trajectory"]) == json.dumps(same["trajectory"])
+    assert [r["cost"] for r in one["replans"]] == [r["cost"] for r in same["replans"]]
+
+
+def test_another_seed_gives_another_trajectory(kbga_bench):
+    one, other = (
+        json.loads(kbga_bench(*SIMULATE, "--seed", seed, "--format", "json").out) for seed in (3, 4)
+    )
+    assert one["trajectory"] != other["trajectory"]
+
+
+def test_a_simulation_that_does_not_reach_its_goal_ends_with_code_1(kbga_bench):
+    done = kbga_bench(*SIMULATE, "--time-limit", 3, "--format", "json", code=1)
+    assert json.loads(done.out)["outcome"] == "out_of_time"
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "message"),
+    [
+        ("--speed", 0, "world: speed is 0.0. It must be a finite number, above 0."),
+        ("--set", "colour=red", "kbga: no setting 'colour'."),
+        ("--query", "home", "door: no query 'home'. It has: main."),
+    ],
+)
+def test_a_simulation_that_cannot_be_run_says_why(error_of, option, value, message):
+    assert message in error_of(*SIMULATE, option, value)
+
+
+def test_a_planner_that_refuses_is_not_simulated(error_of):
+    said = error_of("simulate", "door", "--planner", "ompl-rrtstar", "--generations", 9)
+    assert "ompl-rrtstar refuses: ompl-rrtstar can't be limited by generations." in said
+
+
 def test_generate_keeps_a_scene_as_a_file_that_is_the_same_scene(kbga_bench, tmp_path):
     file = tmp_path / "kept.geojson"
     done = kbga_bench("generate", "scattered", "--obstacles", 20, "--seed", 7, "--output", file)
@@ -116,6 +200,19 @@ def test_generate_keeps_a_scene_as_a_file_that_is_the_same_scene(kbga_bench, tmp
     )
     assert by_file == by_name
     assert by_file["scene"] == "scattered_20-7"
+
+
+def test_generate_keeps_a_scene_of_moving_obstacles_too(kbga_bench, tmp_path):
+    file = tmp_path / "kept.geojson"
+    kbga_bench("generate", "moving", "--seed", 7, "--output", file)
+    assert read_scene(file).hash == load_scene("moving-7").hash
+
+
+def test_generate_takes_a_number_of_obstacles_if_and_only_if_they_are_scattered(error_of, tmp_path):
+    output = ("--output", tmp_path / "s.geojson")
+    assert "--obstacles" in error_of("generate", "scattered", *output)
+    assert "--obstacles" in error_of("generate", "moving", "--obstacles", 5, *output)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_generate_says_what_it_can_not_write(error_of, tmp_path):

@@ -9,10 +9,12 @@ import pytest
 import shapely
 from numba import njit
 
+from suite.dynamic.settings import WorldSettings
 from suite.errors import SceneError
 from suite.exact import shortest_path
 from suite.geometry.kernels import first_collision, segment_enters
 from suite.scenes.catalogue import (
+    dynamic_names,
     generated_names,
     has_scene,
     load_scene,
@@ -49,7 +51,7 @@ def test_the_catalogue_is_in_the_papers_order():
 
 def test_the_catalogue_names_exactly_the_files_that_are_shipped():
     shipped = {f.stem for f in scene_file("maze").parent.glob("*.geojson")}
-    assert shipped == set(scene_names())
+    assert shipped == {*scene_names(), *dynamic_names()}
 
 
 @every_scene
@@ -69,6 +71,18 @@ def test_a_scene_says_that_it_is_a_reconstruction_and_of_which_figure(name):
     assert properties["figure"] == FIGURES[name]
     assert "reconstructed" in properties["description"]
     assert properties.get("paper_best") == BEST_OF_PAPER.get(name)
+
+
+@pytest.mark.parametrize("name", dynamic_names())
+def test_a_dynamic_scene_loads_without_a_warning_and_says_what_it_is(name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        scene = load_scene(name)
+    assert scene.is_dynamic
+    assert scene.properties["reconstruction"] is True
+    assert "reconstructed" in scene.properties["description"].lower()
+    assert set(scene.properties["world"]) <= set(WorldSettings.__slots__)
+    assert scene.properties["gates"]
 
 
 @every_scene
@@ -189,8 +203,9 @@ def test_an_unknown_name_is_answered_with_the_catalogue_and_the_nearest_name():
         load_scene("mase")
     assert str(error.value) == (
         "no scene 'mase'. Catalogue: unstructured, maze, zigzag, double_u, clustered, "
-        "obstacles_20, obstacles_30, obstacles_40. Generated: scattered_100, scattered_300, "
-        "scattered_1000, scattered_3000, or scattered_N-S for N obstacles and seed S. "
+        "obstacles_20, obstacles_30, obstacles_40. Dynamic: door, unknown_obstacles. Generated: "
+        "scattered_100, scattered_300, scattered_1000, scattered_3000, moving-0, or scattered_N-S "
+        "for N obstacles and seed S, moving-S for seed S. "
         "Did you mean 'maze'?"
     )
 
@@ -226,7 +241,7 @@ def test_a_generated_name_out_of_range_says_the_range(name):
 
 
 def test_a_name_that_resembles_nothing_gets_no_suggestion():
-    with pytest.raises(SceneError, match=r"seed S\.$"):
+    with pytest.raises(SceneError, match=r"moving-S for seed S\.$"):
         scene_file("xyzzy")
 
 

@@ -1,0 +1,127 @@
+"""A population in a changed environment, and with a robot that moves (paper II-D, III-D).
+
+The population is kept. Its start is moved to where the robot is, everything is evaluated anew, and
+if the environment changed, mutation at a high rate makes the population diverse again.
+"""
+
+import numpy as np
+
+from kbga.draws import Draws, draw
+from kbga.encoding import (
+    GOAL,
+    START,
+    Lattice,
+    Population,
+    close_columns,
+    distance,
+    forget,
+    set_node,
+)
+from kbga.evaluation import evaluate_segment, sum_up
+from kbga.operators.mutation import mutate
+from kbga.problem import Problem
+from kbga.tuning import Rates
+from suite.compiled import kernel
+
+
+@kernel
+def restart(
+    population: Population,
+    x: float,
+    y: float,
+    problem: Problem,
+    penalty: float,
+    counter: np.ndarray,
+) -> None:
+    """Let all chromosomes begin at a new start (x, y), and evaluate them in their environment.
+
+    Nodes that the robot has passed are dropped (ours): those before the place where it is nearest
+    to the path. The path that it follows so stays the same from where it is.
+    """
+    nodes = population.nodes
+    for i in range(nodes.shape[0]):
+        passed = _nearest_segment(nodes, i, population.chromosomes[i].intermediate, x, y)
+        close_columns(population, i, 1, passed)
+        nodes[i, 0].gene, nodes[i, 0].x, nodes[i, 0].y = START, x, y
+        size = population.chromosomes[i].intermediate
+        forget(nodes, i, 0, size + 1)
+        for k in range(size + 1):
+            evaluate_segment(nodes, i, k, problem.arrays, problem.memory, counter)
+        sum_up(population, i, penalty)
+
+
+@kernel
+def _nearest_segment(nodes: np.ndarray, i: int, size: int, x: float, y: float) -> int:
+    """The segment of chromosome i that is nearest to a place; of several, the last."""
+    nearest = 0
+    least = np.inf
+    for k in range(size + 1):
+        ax, ay = nodes[i, k].x, nodes[i, k].y
+        bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
+        away = _distance_to_segment(x, y, ax, ay, bx, by)
+        if away <= least:
+            nearest, least = k, away
+    return nearest
+
+
+@kernel
+def _distance_to_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
+    dx, dy = bx - ax, by - ay
+    square = dx * dx + dy * dy
+    share = 0.0 if square == 0.0 else ((x - ax) * dx + (y - ay) * dy) / square
+    share = min(max(share, 0.0), 1.0)
+    return distance(x, y, ax + share * dx, ay + share * dy)
+
+
+@kernel
+def put_path(
+    population: Population,
+    i: int,
+    genes: np.ndarray,
+    ends: np.ndarray,
+    lattice: Lattice,
+) -> None:
+    """Write a path over chromosome i: it is to be evaluated after.
+
+    genes : (k,) int64, lattice numbers of its intermediate nodes.
+    ends : (2, 2), start and goal, metres.
+    """
+    nodes = population.nodes
+    size = genes.size
+    nodes[i, 0].gene, nodes[i, 0].x, nodes[i, 0].y = START, ends[0, 0], ends[0, 1]
+    for k in range(size):
+        set_node(nodes, i, k + 1, genes[k], lattice)
+    nodes[i, size + 1].gene = GOAL
+    nodes[i, size + 1].x, nodes[i, size + 1].y = ends[1, 0], ends[1, 1]
+    population.chromosomes[i].intermediate = size
+
+
+def genes_of(path: np.ndarray, lattice: Lattice) -> np.ndarray:
+    """Lattice numbers (k,), int64, of the intermediate nodes of a path (k + 2, 2) over it."""
+    columns = np.rint((path[1:-1, 0] - lattice.x0) / lattice.dx)
+    rows = np.rint((path[1:-1, 1] - lattice.y0) / lattice.dy)
+    return (rows * lattice.side + columns).astype(np.int64)
+
+
+def most_draws_of_disturbance(population_size: int) -> int:
+    """Random numbers that a disturbance takes at most: whether, where, and what, for each."""
+    return 3 * population_size
+
+
+@kernel
+def disturb(
+    population: Population,
+    spared: int,
+    probability: float,
+    problem: Problem,
+    rates: Rates,
+    draws: Draws,
+    counter: np.ndarray,
+) -> None:
+    """Apply mutation with a high probability to all chromosomes but one: the best stays as it is.
+
+    So a change of the environment that does not concern the best path leaves it unchanged.
+    """
+    for i in range(population.chromosomes.size):
+        if i != spared and draw(draws) < probability:
+            mutate(population, i, problem, rates.penalty, draws, counter)
