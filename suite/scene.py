@@ -204,7 +204,7 @@ def make_scene(
     Raises
     ------
     SceneError
-        If a polygon is not valid, or a start or goal is not in free space.
+        If a polygon is not valid, or a start or goal is not in free space at time 0.
 
     Examples
     --------
@@ -250,9 +250,11 @@ def make_scene(
         properties=MappingProxyType(dict(properties or {})),
         path=path,
     )
+    # What comes upon an end later is what dynamic scenes are for: a hit, or a goal to wait for.
+    first = scene_at(scene, 0.0) if scene.is_dynamic else scene
     for query in scene.queries:
-        _check_free(where, scene, f"start of query '{query.name}'", query.start)
-        _check_free(where, scene, f"goal of query '{query.name}'", query.goal)
+        _check_free(where, first, f"start of query '{query.name}'", query.start)
+        _check_free(where, first, f"goal of query '{query.name}'", query.goal)
     return scene
 
 

@@ -216,3 +216,16 @@ def test_an_inflated_scene_keeps_its_dynamics():
     obstacle = Obstacle("a", box(2, 2, 4, 4), SLIDING)
     scene = make_scene("drawn", ROOM, [obstacle], ENDS, inflate=0.5)
     assert scene.obstacles[0].dynamics is SLIDING
+
+
+@pytest.mark.parametrize("end", [(1, 1), (9, 9)])
+def test_start_and_goal_need_to_be_free_at_time_0_only(end):
+    x, y = end
+    on_it = box(x - 1, y - 1, x + 1, y + 1)
+    later = Obstacle("later", on_it, Dynamics(appears=3.0))
+    leaves_first = Obstacle("elsewhere", on_it, Dynamics(make_motion([(0, 4, 0), (9, 0, 0)])))
+    assert len(scene_of(later).obstacles) == len(scene_of(leaves_first).obstacles) == 1
+    beside = box(x - 1, 4, x + 1, 6)
+    comes_first = make_motion([(0, 0, y - 5), (9, 0, 0)])
+    with pytest.raises(SceneError, match=r"lies inside on it\. Move it to free space\."):
+        scene_of(Obstacle("on it", beside, Dynamics(comes_first)))
