@@ -265,6 +265,12 @@ def simulate(
     checks: Annotated[
         int | None, typer.Option(help="Budget of each plan: collision checks.")
     ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw snapshots: .png, .pdf or .svg.")
+    ] = None,
+    animate: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw it moving: .gif or .mp4.")
+    ] = None,
     style: Annotated[TextFormat, typer.Option("--format", help="For people or programs.")] = (
         TextFormat.TEXT
     ),
@@ -273,7 +279,7 @@ def simulate(
 
     Exit code 0 if it reached the goal and was never hit, 1 otherwise.
 
-    Example: kbga-bench simulate door --planner kbga --seed 3 --speed 5
+    Example: kbga-bench simulate door --planner kbga --seed 3 --speed 5 --animate door.gif
     """
     from suite.dynamic.single import Wanted, as_data, as_text, run_single, unhurt
     from suite.harness.single import parse_settings
@@ -296,7 +302,21 @@ def simulate(
         },
         budget=Budget(wall_s, generations, checks),
     )
-    done = run_single(wanted)
+    if plot is None and animate is None:
+        done = run_single(wanted)
+    else:
+        from suite.report import dynamic_figures
+        from suite.report.figures import check_figure_file, save
+
+        if plot is not None:
+            check_figure_file(plot)
+        if animate is not None:
+            dynamic_figures.check_animation_file(animate)
+        done = run_single(wanted)
+        if plot is not None:
+            save(dynamic_figures.plot_snapshots(done), plot)
+        if animate is not None:
+            dynamic_figures.animate(done, animate)
     if style is TextFormat.JSON:
         _print_json(as_data(wanted, done))
     else:

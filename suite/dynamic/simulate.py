@@ -24,7 +24,7 @@ planner), so there is no time step to choose.
 
 import gc
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
@@ -78,6 +78,18 @@ class Replan:
     checks: int | None = None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Course:
+    """What the robot set out to follow.
+
+    time : seconds, from when on.
+    path : (n, 2) float64, metres, from where it was then; None if it had to wait.
+    """
+
+    time: float
+    path: NDArray[np.float64] | None
+
+
 class Outcome(StrEnum):
     """How a run ended, in a word."""
 
@@ -97,6 +109,10 @@ class Simulation:
     outcome : how it ended.
     trajectory : where the robot was when.
     replans : one for each update at which the replanner was asked, or could not be.
+    courses : what the robot followed, in the order of time; the first one begins with the first
+        answer of the replanner.
+    detected : mapping from the name of an obstacle that was unknown at first to when it was
+        detected, seconds.
     hits : the first hit by each obstacle.
     gates : the openings that the robot passed, in order.
     """
@@ -107,6 +123,8 @@ class Simulation:
     outcome: Outcome
     trajectory: Trajectory
     replans: tuple[Replan, ...]
+    courses: tuple[Course, ...]
+    detected: Mapping[str, float]
     hits: tuple[Hit, ...]
     gates: tuple[Crossing, ...]
 
@@ -162,6 +180,8 @@ def simulate(
         outcome=outcome,
         trajectory=trajectory,
         replans=tuple(run.replans),
+        courses=tuple(run.courses),
+        detected=dict(run.world.detected),
         hits=tuple(hits(run.world.scene, trajectory)),
         gates=tuple(sorted(gates, key=lambda crossing: crossing.time)),
     )
@@ -195,6 +215,7 @@ class _Run:
         self.world = World(scene, settings)
         self.robot = Robot(query.start, settings.speed)
         self.replans: list[Replan] = []
+        self.courses: list[Course] = []
         self._query = query
         self._replanner = replanner
         self._settings = settings
@@ -224,6 +245,7 @@ class _Run:
             self._note(Replan(self.robot.time, self.robot.place, known, changed, ENCLOSED))
             self._pending = None
             self.robot.path = None
+            self.courses.append(Course(self.robot.time, None))
             self.robot.wait(until)
             return
         if self._pending is None:
@@ -247,6 +269,7 @@ class _Run:
             self._pending = None
         elif pending.ready <= robot.time:
             self._take(pending, self._known)
+            self.courses.append(Course(robot.time, robot.path))
             self._pending = None
 
     def _take(self, pending: _Pending, known: Scene) -> None:

@@ -28,13 +28,14 @@ class World:
     ----------
     scene : Scene
         With the motions as fast as the settings want them.
-    detected : set of names of the obstacles that were unknown at first and are not any more.
+    detected : dict from the name of an obstacle that was unknown at first and is not any more to
+        when it was detected, seconds.
     """
 
     def __init__(self, scene: Scene, settings: WorldSettings) -> None:
         self.scene = quickened(scene, settings.obstacle_speed_factor)
         self.settings = settings
-        self.detected: set[str] = set()
+        self.detected: dict[str, float] = {}
         self._known: Scene | None = None
         self._state: object = None
 
@@ -49,7 +50,7 @@ class World:
         gone = {o.name for o in changing if vanishes(_of(o), trajectory) <= time}
         there = [o for o in changing if o.name not in gone and _of(o).is_there(time)]
         robot = shapely.Point(trajectory.xy[-1])
-        self.detected |= {o.name for o in there if self._detects(o, robot, time)}
+        self.detected |= {o.name: time for o in there if self._detects(o, robot, time)}
         known = [o for o in there if self._is_known(o)]
         state = [(o.name, *_of(o).offset(time).tolist()) for o in known]
         if self._known is None or state != self._state:

@@ -145,8 +145,18 @@ def check_figure_file(file: Path) -> None:
     KbgaBenchError
         If its kind is unknown or its folder is missing.
     """
-    if file.suffix.lower() not in SUFFIXES:
-        raise KbgaBenchError(f"{file}: figures are {', '.join(SUFFIXES)}. Name such a file.")
+    check_file(file, "figures", SUFFIXES)
+
+
+def check_file(file: Path, what: str, suffixes: Sequence[str]) -> None:
+    """Refuse a file of a kind that these things can't be, or in a folder that there is not.
+
+    Raises
+    ------
+    KbgaBenchError
+    """
+    if file.suffix.lower() not in suffixes:
+        raise KbgaBenchError(f"{file}: {what} are {', '.join(suffixes)}. Name such a file.")
     if not file.parent.is_dir():
         raise KbgaBenchError(f"{file}: there is no folder {file.parent}. Make it first.")
 
@@ -184,46 +194,58 @@ def _scene_figure(scene: Scene) -> tuple[Figure, Axes]:
     xmin, ymin, xmax, ymax = scene.bounds
     height = WIDTH * min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0) + AROUND
     figure, axes = plt.subplots(figsize=(WIDTH, height), layout="constrained")
-    # The workspace has an outline of its own.
-    axes.spines[:].set_visible(False)
-    axes.add_patch(
-        PathPatch(_outline(scene.workspace), facecolor="white", edgecolor="black", linewidth=1.2)
-    )
+    draw_room(axes, scene)
     for obstacle in scene.obstacles:
         axes.add_patch(
             PathPatch(
-                _outline(obstacle.polygon),
+                outline(obstacle.polygon),
                 facecolor=OBSTACLE,
                 edgecolor=OBSTACLE_EDGE,
                 linewidth=0.7,
             )
         )
+    return figure, axes
+
+
+def draw_room(axes: Axes, scene: Scene) -> PathPatch:
+    """Draw the workspace, and set the limits and the scale by it."""
+    xmin, ymin, xmax, ymax = scene.bounds
+    # The workspace has an outline of its own.
+    axes.spines[:].set_visible(False)
+    room = PathPatch(outline(scene.workspace), facecolor="white", edgecolor="black", linewidth=1.2)
+    axes.add_patch(room)
     margin = 0.02 * max(xmax - xmin, ymax - ymin)
     axes.set_xlim(xmin - margin, xmax + margin)
     axes.set_ylim(ymin - margin, ymax + margin)
     axes.set_aspect("equal")
-    return figure, axes
+    return room
 
 
-def _outline(polygon: Polygon) -> Outline:
+def outline(polygon: Polygon) -> Outline:
+    """Draw a polygon and its holes as one outline."""
     rings = [np.asarray(ring.coords)[:, :2] for ring in (polygon.exterior, *polygon.interiors)]
     return Outline.make_compound_path(*(Outline(ring, closed=True) for ring in rings))
 
 
-def _finish(figure: Figure, axes: Axes, query: Query, title: str) -> None:
+def draw_ends(axes: Axes, query: Query, scale: float = 1.0) -> None:
+    """Mark start and goal, so many times as large as in a picture of WIDTH."""
     for point, name, marker in ((query.start, "start", "o"), (query.goal, "goal", "*")):
         axes.plot(
             *point,
             marker=marker,
-            markersize=9 if marker == "o" else 14,
+            markersize=scale * (9 if marker == "o" else 14),
             markerfacecolor="white",
             markeredgecolor="black",
-            markeredgewidth=1.4,
+            markeredgewidth=max(1.4 * scale, 0.8),
             linestyle="none",
             label=name,
             zorder=5,
             clip_on=False,
         )
+
+
+def _finish(figure: Figure, axes: Axes, query: Query, title: str) -> None:
+    draw_ends(axes, query)
     axes.set_title(title)
     axes.set_xlabel("x (m)")
     axes.set_ylabel("y (m)")

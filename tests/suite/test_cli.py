@@ -11,6 +11,7 @@ import uuid
 import warnings
 from dataclasses import dataclass
 
+import PIL.Image
 import psutil
 import pytest
 import shapely
@@ -176,6 +177,26 @@ def test_a_simulation_that_does_not_reach_its_goal_ends_with_code_1(kbga_bench):
 )
 def test_a_simulation_that_cannot_be_run_says_why(error_of, option, value, message):
     assert message in error_of(*SIMULATE, option, value)
+
+
+def test_a_simulation_is_drawn_in_snapshots_and_moving(kbga_bench, tmp_path):
+    sheet, moving = tmp_path / "door.png", tmp_path / "door.gif"
+    kbga_bench(*SIMULATE, "--time-limit", 3, "--plot", sheet, "--animate", moving, code=1)
+    for file, kind in ((sheet, "PNG"), (moving, "GIF")):
+        with PIL.Image.open(file) as image:
+            assert image.format == kind
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        ("--plot", "x.txt: figures are .png, .pdf, .svg. Name such a file."),
+        ("--animate", "x.txt: animations are .gif, .mp4. Name such a file."),
+    ],
+)
+def test_a_picture_of_a_simulation_is_refused_before_it_is_run(error_of, tmp_path, option, message):
+    never = ("simulate", "door", "--planner", "no-such-planner")
+    assert message in error_of(*never, option, tmp_path / "x.txt")
 
 
 def test_a_planner_that_refuses_is_not_simulated(error_of):
