@@ -47,8 +47,8 @@ II-B   the cost tells feasible from infeasible, and     kbga.evaluation.sum_up
        good from bad among either
 II-B   Eq. (1): the sum over the segments of length     kbga.evaluation.sum_up
        and C times depth of collision
-ours   C: the value that serves the plain GA best;      KBGASettings.penalty
-       KBGA comes out alike over two decades
+ours   C: KBGA comes out alike over two decades; the    KBGASettings.penalty
+       plain GA wants it large
 II-B   Eq. (2): the depth is 0 for a feasible segment,  kbga.evaluation.evaluate_segment
        else the sum over the obstacles that it
        intersects

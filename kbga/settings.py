@@ -35,12 +35,12 @@ class KBGASettings:
         see :mod:`kbga.tuning` (future work in paper V; 0: they stay as they are, as in the paper).
     tournament_size : individuals that compete to be a parent (ours).
     penalty : the constant C of Eq. (1), metres of path per metre of collision depth (ours: KBGA
-        comes out alike from 10 to 1000, so it is the value that serves the plain GA best; at 1 a
-        short cut through a wall of `maze` costs less than the way around it).
+        comes out alike from 10 to 1000, the plain GA wants 100 or more; at 1 a short cut through a
+        wall of `maze` costs less than the way around it).
     repair_candidates : nodes tried around the intersected obstacle in one repair (ours).
     repair_limit : a chromosome is repaired only while its length is below this many times the best
         feasible path's (ours: a repair makes a path longer, so one that is longer already is not
-        worth the checks; they were three quarters of all. ``inf`` repairs without regard to that).
+        worth the checks, which were most of all. ``inf`` repairs without regard to that).
     improvement_radius : longest step of the local search around a node, lattice units (ours).
     rounds : how often at most a child meets repair, deletion and improvement in one generation,
         each time by probability and heuristic; a round without effect is the last (ours: the
