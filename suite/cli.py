@@ -92,6 +92,14 @@ SceneArgument = Annotated[
     str, typer.Argument(metavar="SCENE", help="Name in the catalogue, or path of a scene file.")
 ]
 StoreArgument = Annotated[Path, typer.Argument(metavar="STORE", help="Result store (SQLite).")]
+PlannerOption = Annotated[str, typer.Option(help="Name of the planner; see `list planners`.")]
+SeedOption = Annotated[int, typer.Option(min=0, help="Of the random stream.")]
+QueryOption = Annotated[str | None, typer.Option(help="Name of the query; default: the first.")]
+SettingsOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="A setting of the planner; repeatable."),
+]
+TextStyle = Annotated[TextFormat, typer.Option("--format", help="For people or programs.")]
 
 
 @app.command("list")
@@ -150,12 +158,8 @@ def generate(
 @app.command()
 def exact(
     scene: SceneArgument,
-    query: Annotated[str | None, typer.Option(help="Name of the query; default: the first.")] = (
-        None
-    ),
-    style: Annotated[TextFormat, typer.Option("--format", help="For people or programs.")] = (
-        TextFormat.TEXT
-    ),
+    query: QueryOption = None,
+    style: TextStyle = TextFormat.TEXT,
 ) -> None:
     """Compute the exact shortest path of a scene, or say that there is none.
 
@@ -173,15 +177,10 @@ def exact(
 @app.command()
 def plan(
     scene: SceneArgument,
-    planner: Annotated[str, typer.Option(help="Name of the planner; see `list planners`.")],
-    seed: Annotated[int, typer.Option(min=0, help="Of the random stream.")] = 0,
-    query: Annotated[str | None, typer.Option(help="Name of the query; default: the first.")] = (
-        None
-    ),
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="A setting of the planner; repeatable."),
-    ] = None,
+    planner: PlannerOption,
+    seed: SeedOption = 0,
+    query: QueryOption = None,
+    settings: SettingsOption = None,
     wall_s: Annotated[float | None, typer.Option(help="Budget: seconds of wall time.")] = None,
     generations: Annotated[
         int | None, typer.Option(help="Budget: generations or iterations.")
@@ -190,9 +189,7 @@ def plan(
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw the run: .png, .pdf or .svg.")
     ] = None,
-    style: Annotated[TextFormat, typer.Option("--format", help="For people or programs.")] = (
-        TextFormat.TEXT
-    ),
+    style: TextStyle = TextFormat.TEXT,
 ) -> None:
     """Run one planner once, here and now, and say what came of it.
 
@@ -232,15 +229,10 @@ def plan(
 @app.command()
 def simulate(
     scene: SceneArgument,
-    planner: Annotated[str, typer.Option(help="Name of the planner; see `list planners`.")],
-    seed: Annotated[int, typer.Option(min=0, help="Of the random stream.")] = 0,
-    query: Annotated[str | None, typer.Option(help="Name of the query; default: the first.")] = (
-        None
-    ),
-    settings: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="A setting of the planner; repeatable."),
-    ] = None,
+    planner: PlannerOption,
+    seed: SeedOption = 0,
+    query: QueryOption = None,
+    settings: SettingsOption = None,
     cold: Annotated[
         bool, typer.Option("--cold", help="Plan afresh at every update, whatever the planner can.")
     ] = False,
@@ -271,9 +263,7 @@ def simulate(
     animate: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw it moving: .gif or .mp4.")
     ] = None,
-    style: Annotated[TextFormat, typer.Option("--format", help="For people or programs.")] = (
-        TextFormat.TEXT
-    ),
+    style: TextStyle = TextFormat.TEXT,
 ) -> None:
     """Let a robot find its way through a dynamic scene, planning anew as it goes.
 
