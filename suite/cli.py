@@ -271,47 +271,58 @@ def simulate(
 
     Example: kbga-bench simulate door --planner kbga --seed 3 --speed 5 --animate door.gif
     """
-    from suite.dynamic.single import Wanted, as_data, as_text, run_single, unhurt
-    from suite.harness.single import parse_settings
+    from suite.harness.cell import run_cell
+    from suite.harness.single import cell_for, parse_settings
+    from suite.harness.single_simulation import (
+        as_data,
+        as_text,
+        simulation_of,
+        unhurt,
+        world_for,
+    )
     from suite.planner import Budget
 
-    wanted = Wanted(
+    if plot is not None:
+        from suite.report.figures import check_figure_file
+
+        check_figure_file(plot)
+    if animate is not None:
+        from suite.report.dynamic_figures import check_animation_file
+
+        check_animation_file(animate)
+    overrides = {
+        "speed": speed,
+        "interval": interval,
+        "sensing_range": sensing_range,
+        "obstacle_speed_factor": obstacle_speed_factor,
+        "time_limit": time_limit,
+        "charge": charge.value,
+    }
+    cell = cell_for(
         scene,
         planner,
-        seed,
+        seed=seed,
         query=query,
-        cold=cold,
         settings=parse_settings(settings or []),
-        world={
-            "speed": speed,
-            "interval": interval,
-            "sensing_range": sensing_range,
-            "obstacle_speed_factor": obstacle_speed_factor,
-            "time_limit": time_limit,
-            "charge": charge.value,
-        },
         budget=Budget(wall_s, generations, checks),
+        world=world_for(scene, overrides, cold=cold),
     )
-    if plot is None and animate is None:
-        done = run_single(wanted)
-    else:
-        from suite.report import dynamic_figures
-        from suite.report.figures import check_figure_file, save
+    record = run_cell(cell)
+    done = simulation_of(record) if plot is not None or animate is not None else None
+    if done is not None and plot is not None:
+        from suite.report.dynamic_figures import plot_snapshots
+        from suite.report.figures import save
 
-        if plot is not None:
-            check_figure_file(plot)
-        if animate is not None:
-            dynamic_figures.check_animation_file(animate)
-        done = run_single(wanted)
-        if plot is not None:
-            save(dynamic_figures.plot_snapshots(done), plot)
-        if animate is not None:
-            dynamic_figures.animate(done, animate)
+        save(plot_snapshots(done), plot)
+    if done is not None and animate is not None:
+        from suite.report.dynamic_figures import animate as write_animation
+
+        write_animation(done, animate)
     if style is TextFormat.JSON:
-        _print_json(as_data(wanted, done))
+        _print_json(as_data(record))
     else:
-        typer.echo(as_text(wanted, done))
-    raise typer.Exit(0 if unhurt(done) else 1)
+        typer.echo(as_text(record))
+    raise typer.Exit(0 if unhurt(record) else 1)
 
 
 @app.command()
@@ -364,12 +375,10 @@ def tables(
 
     Example: kbga-bench tables out/paper.db --format markdown
     """
-    from suite.report.results import write_tables
+    from suite.report.results import read_tables, write_tables
     from suite.report.table import Format, render
-    from suite.report.tables import all_tables
-    from suite.store import read_first_measures, read_runs
 
-    found = all_tables(read_runs(store), read_first_measures(store))
+    found = read_tables(store)
     if output is not None:
         for path in write_tables(found, output, Format(style)):
             typer.echo(path)

@@ -13,6 +13,25 @@ from suite.planner import Budget, Improvement, PlanStatus
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class World:
+    """The world that a robot drives through while the planner plans again and again.
+
+    name : of these settings, in tables.
+    settings : all fields of :class:`suite.dynamic.settings.WorldSettings`, as plain data.
+    cold : plan afresh at every update, though the planner may have a replanner of its own.
+    """
+
+    name: str
+    settings: Mapping[str, Any]
+    cold: bool = False
+
+    @property
+    def as_dict(self) -> dict[str, Any]:
+        """The same as plain data."""
+        return {"name": self.name, "settings": dict(self.settings), "cold": self.cold}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Cell:
     """One run that is wanted: a query of a scene, a planner variant, a budget and a seed.
 
@@ -24,8 +43,9 @@ class Cell:
     planner : name of the plugin.
     distribution, version : the package that the plugin comes from.
     settings : all settings of the planner, as plain data.
-    budget : what the run may use.
+    budget : what the run may use; in a dynamic world each single plan.
     seed : int, 0 or more.
+    world : of a run that is simulated; None if the scene stands still and is planned in once.
     position : place in its matrix; tables keep that order. The outcome does not depend on it.
     """
 
@@ -40,12 +60,14 @@ class Cell:
     settings: Mapping[str, Any]
     budget: Budget
     seed: int
+    world: World | None = None
     position: int = 0
 
     @property
     def label(self) -> str:
         """Short name of the cell for people."""
-        return f"{self.scene} / {self.variant} / seed {self.seed}"
+        world = self.world.name if self.world is not None else ""
+        return " / ".join(filter(None, (self.scene, world, self.variant, f"seed {self.seed}")))
 
     @property
     def budget_as_dict(self) -> dict[str, float | int | None]:
@@ -63,7 +85,7 @@ class Cell:
 
         The names of scene, query and variant are in it because they choose the random stream.
         """
-        content = [
+        content: list[Any] = [
             self.scene_hash,
             self.scene,
             self.query,
@@ -74,12 +96,18 @@ class Cell:
             self.budget_as_dict,
             self.seed,
         ]
+        if self.world is not None:
+            content.append(self.world.as_dict)
         return hashlib.sha256(canonical_json(content).encode()).hexdigest()[:32]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RunRecord:
     """One run that was attempted.
+
+    In a simulated run the path is the way that the robot went: cost is its length, optimum the
+    length that it would have if the robot had followed the exact shortest path at each update;
+    generations, checks and seconds are the sums over all plans.
 
     cell : what was run.
     status : how it ended.
@@ -106,6 +134,7 @@ class RunRecord:
     path : (n, 2) float64, metres, as the planner returned it; None if it returned none.
     details : further numbers that the planner gave.
     stderr : the last lines that the process wrote there, if the run failed.
+    simulation : of a simulated run, as :func:`suite.dynamic.plain.as_data` gives it.
     """
 
     cell: Cell
@@ -135,6 +164,7 @@ class RunRecord:
     path: NDArray[np.float64] | None = None
     details: Mapping[str, float] = field(default_factory=dict)
     stderr: str = ""
+    simulation: Mapping[str, Any] | None = None
 
 
 def canonical_json(value: Any) -> str:

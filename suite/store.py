@@ -21,7 +21,7 @@ from suite.errors import StoreError
 from suite.record import Cell, RunRecord, canonical_json
 
 APPLICATION_ID = 0x4B424741  # "KBGA"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 BUSY_S = 10.0
 """How long to wait for another process that writes."""
 
@@ -33,7 +33,8 @@ CREATE TABLE sessions (
 CREATE TABLE runs (
     key TEXT PRIMARY KEY, position INTEGER NOT NULL,
     session INTEGER NOT NULL REFERENCES sessions (id),
-    scene TEXT NOT NULL, query TEXT NOT NULL, variant TEXT NOT NULL, seed INTEGER NOT NULL,
+    scene TEXT NOT NULL, query TEXT NOT NULL, world TEXT, variant TEXT NOT NULL,
+    seed INTEGER NOT NULL,
     status TEXT NOT NULL, reason TEXT,
     cost REAL, claimed_cost REAL, claim_differs INTEGER, optimum REAL, gap REAL,
     clearance REAL, segments INTEGER, turning REAL,
@@ -41,7 +42,7 @@ CREATE TABLE runs (
     wall_s REAL, time_to_best_s REAL, cpu_s REAL, cpu_to_best_s REAL,
     load REAL, contended INTEGER,
     planner TEXT NOT NULL, distribution TEXT NOT NULL, version TEXT NOT NULL,
-    settings TEXT NOT NULL,
+    settings TEXT NOT NULL, world_settings TEXT, cold INTEGER NOT NULL,
     budget_wall_s REAL, budget_generations INTEGER, budget_checks INTEGER,
     scene_source TEXT NOT NULL, scene_hash TEXT NOT NULL,
     host TEXT, started_at TEXT, details TEXT NOT NULL, stderr TEXT NOT NULL
@@ -54,13 +55,14 @@ CREATE TABLE events (
 ) WITHOUT ROWID;
 CREATE TABLE traces (key TEXT PRIMARY KEY REFERENCES runs (key), trace TEXT NOT NULL);
 CREATE TABLE paths (key TEXT PRIMARY KEY REFERENCES runs (key), xy BLOB NOT NULL);
+CREATE TABLE simulations (key TEXT PRIMARY KEY REFERENCES runs (key), data TEXT NOT NULL);
 """
 
-_CELL_COLUMNS = tuple(f.name for f in fields(Cell) if f.name not in ("settings", "budget"))
+_CELL_COLUMNS = tuple(f.name for f in fields(Cell) if f.name not in ("settings", "budget", "world"))
 _OUTCOME_COLUMNS = tuple(
     f.name
     for f in fields(RunRecord)
-    if f.name not in ("cell", "improvements", "trace", "path", "details")
+    if f.name not in ("cell", "improvements", "trace", "path", "details", "simulation")
 )
 
 
@@ -132,6 +134,9 @@ class Store:
             if record.path is not None:
                 blob = np.ascontiguousarray(record.path, dtype="<f8").tobytes()
                 connection.execute("INSERT INTO paths VALUES (?, ?)", (key, blob))
+            if record.simulation is not None:
+                data = json.dumps(record.simulation)
+                connection.execute("INSERT INTO simulations VALUES (?, ?)", (key, data))
 
     @contextmanager
     def _writing(self) -> Iterator[sqlite3.Connection]:
@@ -186,10 +191,11 @@ def read_runs(path: Path) -> pd.DataFrame:
     -------
     DataFrame
         The columns are the fields of :class:`suite.record.Cell` and
-        :class:`suite.record.RunRecord`; settings and details are JSON text.
+        :class:`suite.record.RunRecord`; settings and details are JSON text. Only simulated runs
+        have a ``world``.
     """
     frame = _read(path, "SELECT * FROM runs ORDER BY position, rowid")
-    for column in ("claim_differs", "contended"):
+    for column in ("claim_differs", "contended", "cold"):
         frame[column] = frame[column].astype("boolean")
     for column in ("segments", "generations", "generation_of_best", "checks"):
         frame[column] = frame[column].astype("Int64")
@@ -243,6 +249,61 @@ def read_paths(path: Path) -> dict[str, NDArray[np.float64]]:
     return {key: np.frombuffer(xy, dtype="<f8").reshape(-1, 2) for key, xy in rows}
 
 
+def read_simulations(path: Path) -> pd.DataFrame:
+    """What came of the simulated runs: a row for each.
+
+    Returns
+    -------
+    DataFrame
+        key, outcome, opening (the last one passed), hits (number), end_s, waiting_s.
+    """
+    return _read(
+        path,
+        "SELECT key, data ->> 'outcome' AS outcome, data ->> 'opening' AS opening, "
+        "json_array_length(data, '$.hits') AS hits, data ->> 'time' AS end_s, "
+        "data ->> 'waiting_time' AS waiting_s FROM simulations ORDER BY rowid",
+    )
+
+
+def read_replans(path: Path) -> pd.DataFrame:
+    """Each time that the planner of a simulated run was asked: a row for each.
+
+    Returns
+    -------
+    DataFrame
+        key, number (from 0), time (simulated seconds), changed (whether the robot knew something
+        new), status, cost and optimum (metres), latency_s, generations, checks.
+    """
+    columns = ("time", "changed", "status", "cost", "optimum", "latency_s")
+    counts = ("generations", "checks")
+    values = ", ".join(f"replan.value ->> '{name}' AS {name}" for name in (*columns, *counts))
+    frame = _read(
+        path,
+        f"SELECT simulations.key, replan.key AS number, {values} "
+        "FROM simulations, json_each(simulations.data, '$.replans') AS replan "
+        "ORDER BY simulations.rowid, number",
+    )
+    numbers = ["cost", "optimum", "latency_s"]
+    frame[numbers] = frame[numbers].astype("float64")
+    return frame.astype({"changed": "boolean", "generations": "Int64", "checks": "Int64"})
+
+
+def read_simulation(path: Path, key: str) -> dict[str, Any]:
+    """All of one simulated run, as :func:`suite.dynamic.plain.as_data` gave it.
+
+    Raises
+    ------
+    StoreError
+        If the store has no simulation of that key.
+    """
+    with closing(_open_for_reading(path)) as connection, _explained(path):
+        row = connection.execute("SELECT data FROM simulations WHERE key = ?", (key,)).fetchone()
+    if row is None:
+        raise StoreError(f"{path}: row {key} is no simulated run.")
+    data: dict[str, Any] = json.loads(row[0])
+    return data
+
+
 def read_sessions(path: Path) -> list[dict[str, Any]]:
     """Provenance of each session that wrote rows, oldest first, with its ``id``."""
     with closing(_open_for_reading(path)) as connection, _explained(path):
@@ -258,6 +319,10 @@ def _as_row(record: RunRecord) -> dict[str, Any]:
     row["key"] = cell.key
     row["status"] = str(record.status)
     row["settings"] = canonical_json(cell.settings)
+    world = cell.world
+    row["world"] = None if world is None else world.name
+    row["world_settings"] = None if world is None else canonical_json(world.settings)
+    row["cold"] = world is not None and world.cold
     row["details"] = canonical_json(record.details)
     return row
 

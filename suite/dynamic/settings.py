@@ -66,16 +66,29 @@ def world_settings(scene: Scene, overrides: Mapping[str, Any] | None = None) -> 
         If the scene or the overrides name a field that there is not, or a value is out of range.
     """
     own = scene.properties.get("world", {})
-    names = [field.name for field in fields(WorldSettings)]
-    if not isinstance(own, Mapping) or (unknown := sorted(own.keys() - set(names))):
-        what = f"{unknown[0]!r}" if isinstance(own, Mapping) else repr(own)
-        raise SceneError(
-            f"{scene.name}: its property 'world' holds {what}. It takes {', '.join(names)}."
-        )
     wanted = {key: value for key, value in (overrides or {}).items() if value is not None}
+    _check_names(f"{scene.name}: its property 'world'", own)
+    _check_names("world: it", wanted)
     try:
-        settings = replace(WorldSettings(), **own)
+        settings = _with(WorldSettings(), own)
     except SceneError as error:
         raise SceneError(f"{scene.name}: {error}") from error
-    settings = replace(settings, **wanted)
-    return replace(settings, charge=Charge(settings.charge))
+    return _with(settings, wanted)
+
+
+def _check_names(what: str, values: Any) -> None:
+    """Refuse anything but a mapping from fields of WorldSettings."""
+    names = [field.name for field in fields(WorldSettings)]
+    if isinstance(values, Mapping) and not values.keys() - set(names):
+        return
+    held = sorted(values.keys() - set(names))[0] if isinstance(values, Mapping) else values
+    raise SceneError(f"{what} holds {held!r}. It takes {', '.join(names)}.")
+
+
+def _with(settings: WorldSettings, values: Mapping[str, Any]) -> WorldSettings:
+    changed = replace(settings, **values)
+    try:
+        return replace(changed, charge=Charge(changed.charge))
+    except ValueError as error:
+        known = " or ".join(repr(charge.value) for charge in Charge)
+        raise SceneError(f"world: charge is {changed.charge!r}. It must be {known}.") from error

@@ -53,7 +53,6 @@ class Replan:
 
     time : seconds of simulated time.
     place : (2,) float64, metres, where the robot was.
-    scene : what the robot knew, static.
     changed : whether that is not what it knew at the update before.
     status : a :class:`suite.planner.PlanStatus`, or ENCLOSED.
     reason : why, where that is not plain.
@@ -66,7 +65,6 @@ class Replan:
 
     time: float
     place: NDArray[np.float64]
-    scene: Scene
     changed: bool
     status: str
     reason: str | None = None
@@ -242,7 +240,7 @@ class _Run:
         changed = self._known is not None and known is not self._known
         self._known = known
         if not self.robot.settle(known):
-            self._note(Replan(self.robot.time, self.robot.place, known, changed, ENCLOSED))
+            self._note(Replan(self.robot.time, self.robot.place, changed, ENCLOSED))
             self._pending = None
             self.robot.path = None
             self.courses.append(Course(self.robot.time, None))
@@ -334,7 +332,6 @@ def _judged(
     return Replan(
         time=time,
         place=query.start,
-        scene=known,
         changed=changed,
         status=str(status),
         reason=reason,

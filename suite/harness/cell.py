@@ -1,26 +1,28 @@
 """One run, in this process: warm up, start the clock, plan, stop the clock, ask the referee."""
 
 import traceback
-import zlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from suite.errors import ContractError, SceneError
-from suite.exact import shortest_path
 from suite.geometry.tolerances import COST_CLAIM_RELATIVE
 from suite.harness.machine import host_name, load_average
-from suite.planner import Plan, Planner, PlanStatus, Recorder
-from suite.plugins import load_planner, make_settings
+from suite.harness.prepared import (
+    build_planner,
+    exact_optimum,
+    prepared_scene,
+    referee,
+    stream,
+)
+from suite.harness.simulated import simulated
+from suite.planner import Plan, PlanStatus, Recorder
 from suite.record import Cell, RunRecord
-from suite.referee import Referee
-from suite.scene import Query, Scene, scene_fingerprint
-from suite.scenes.catalogue import load_scene
+from suite.scene import Query, scene_fingerprint
 
 TRACEBACK_LINES = 12
 """Enough for the exception and the frames of the planner that raised it."""
@@ -69,57 +71,13 @@ def run_cell(
         return replace(blank, reason=_last_lines())
 
 
-def stream(cell: Cell) -> np.random.Generator:
-    """The random stream of a cell: another one for each seed, scene, query and variant."""
-    name = f"{cell.scene}/{cell.query}/{cell.variant}"
-    return np.random.default_rng([cell.seed, zlib.crc32(name.encode())])
-
-
-@lru_cache(maxsize=64)
-def prepared_scene(source: str) -> Scene:
-    """A scene with its arrangement computed; kept, so that a warmed process hands it on."""
-    scene = load_scene(source)
-    # Touching the cached property builds it.
-    _ = scene.arrangement
-    return scene
-
-
-@lru_cache(maxsize=64)
-def referee(source: str) -> Referee:
-    """The referee of a scene."""
-    return Referee(prepared_scene(source))
-
-
-@lru_cache(maxsize=256)
-def exact_optimum(source: str, query: str) -> float | None:
-    """Length of the exact shortest path of a query, metres; None if there is no path."""
-    scene = prepared_scene(source)
-    stored = scene.stored_optimum(scene.query(query))
-    if stored is not None:
-        return stored
-    length = shortest_path(scene, scene.query(query)).length
-    return length if np.isfinite(length) else None
-
-
-@lru_cache(maxsize=256)
-def planner_class(name: str) -> type[Planner]:
-    """The class of a plugin; kept, because finding it reads the metadata of every package."""
-    return load_planner(name)
-
-
-def build_planner(name: str, settings: Mapping[str, Any]) -> Planner:
-    """A planner of that plugin name with those settings."""
-    found = planner_class(name)
-    return found(make_settings(found, settings))
-
-
 def _run(
     cell: Cell, blank: RunRecord, recorder: Recorder, before_plan: Callable[[], None]
 ) -> RunRecord:
     scene = prepared_scene(cell.scene_source)
     query = scene.query(cell.query)
     if scene_fingerprint(scene, query) != cell.scene_hash:
-        raise SceneError(f"{cell.scene_source}: the file changed after the matrix was read.")
+        raise SceneError(f"{cell.scene_source}: is not the scene any more that it was at first.")
     planner = build_planner(cell.planner, cell.settings)
     planner.warm_up()
     refusal = planner.refuse(scene, query, cell.budget)
@@ -127,6 +85,8 @@ def _run(
         return replace(blank, status=PlanStatus.REFUSED, reason=str(refusal))
     rng = stream(cell)
     before_plan()
+    if cell.world is not None:
+        return simulated(blank, planner, rng)
     recorder.start_clock()
     plan = planner.plan(scene, query, cell.budget, rng, recorder)
     # The one clock stops here: nothing may come between these lines.

@@ -161,7 +161,7 @@ def _watch(child: _Child, limits: Limits) -> RunRecord:
                 return message
             if message is None:
                 return _crashed(child)
-            phase, patience_s = "plan", limits.plan_s(child.cell.budget)
+            phase, patience_s = "plan", limits.run_s(child.cell)
             deadline = time.monotonic() + patience_s
         elif child.process.sentinel in ready:
             return _crashed(child)

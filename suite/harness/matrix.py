@@ -19,6 +19,19 @@ A TOML file::
     budget = {generations = 200}             # wall_s, generations, checks; none: its own stop
 
 Every query of every scene is run with every variant and every seed.
+
+A matrix of simulated runs names worlds. Then every scene is driven through in each of its worlds,
+and the budget is that of each single plan::
+
+    [[world]]
+    name = "fast robot"
+    scenes = ["door"]                        # default: all
+    settings = {speed = 5.0}                 # of WorldSettings; the rest as the scene wants it
+
+    [[planner]]
+    name = "kbga-cold"
+    planner = "kbga"
+    cold = true                              # plan afresh, though it could go on from what it knows
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -26,6 +39,8 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+from suite.dynamic.plain import settings_as_data
+from suite.dynamic.settings import world_settings
 from suite.errors import ContractError, MatrixError, PluginError, SceneError
 from suite.harness.toml_reader import Reader, read_toml
 from suite.planner import Budget
@@ -37,7 +52,7 @@ from suite.plugins import (
     planner_names,
     settings_as_dict,
 )
-from suite.record import Cell
+from suite.record import Cell, World
 from suite.scene import Scene, scene_fingerprint
 from suite.scene_file import SUFFIXES
 from suite.scenes.catalogue import has_scene, load_scene
@@ -73,6 +88,10 @@ class Limits:
             return self.wall_s
         return self.factor * budget.wall_s + self.grace_s
 
+    def run_s(self, cell: Cell) -> float:
+        """Seconds of wall time after which a run is killed; a simulated one plans many times."""
+        return self.plan_s(cell.budget) if cell.world is None else self.wall_s
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Variant:
@@ -81,12 +100,14 @@ class Variant:
     plugin : where the planner comes from. The runs of one that can't be loaded become rows that
         say so: it stops nobody else.
     settings : all settings, defaults included; as written, if the plugin can't be loaded.
+    cold : in a simulated run, plan afresh at every update.
     """
 
     name: str
     plugin: PluginInfo
     settings: Mapping[str, Any]
     budget: Budget
+    cold: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,6 +115,7 @@ class Matrix:
     """What is to be run. Made by :func:`load_matrix`, which has checked all of it.
 
     sources : what :func:`suite.scenes.catalogue.load_scene` takes, one for each of ``scenes``.
+    worlds : (name, settings) of the worlds of each scene; none if its runs are not simulated.
     """
 
     name: str
@@ -103,9 +125,10 @@ class Matrix:
     variants: tuple[Variant, ...]
     seeds: tuple[int, ...]
     limits: Limits
+    worlds: tuple[tuple[tuple[str, Mapping[str, Any]], ...], ...]
 
     def cells(self, *, quick: bool = False) -> list[Cell]:
-        """All runs: scene by scene, query by query, variant by variant, seed by seed.
+        """All runs: scene by scene, query by query, world by world, variant by variant.
 
         Parameters
         ----------
@@ -113,9 +136,10 @@ class Matrix:
             Only the first two seeds.
         """
         wanted = (
-            (scene, source, query, variant, seed)
-            for scene, source in zip(self.scenes, self.sources, strict=True)
+            (scene, source, query, world, variant, seed)
+            for scene, source, worlds in zip(self.scenes, self.sources, self.worlds, strict=True)
             for query in scene.queries
+            for world in worlds or (None,)
             for variant in self.variants
             for seed in self.seeds
         )
@@ -132,9 +156,10 @@ class Matrix:
                 settings=variant.settings,
                 budget=variant.budget,
                 seed=seed,
+                world=None if world is None else World(*world, cold=variant.cold),
                 position=position,
             )
-            for position, (scene, source, query, variant, seed) in enumerate(wanted)
+            for position, (scene, source, query, world, variant, seed) in enumerate(wanted)
         ]
         first = self.seeds[:QUICK_SEEDS]
         return [cell for cell in cells if cell.seed in first] if quick else cells
@@ -188,16 +213,18 @@ def load_matrix(name_or_path: str | Path) -> Matrix:
     """
     path = matrix_file(name_or_path)
     reader = Reader(path.name, read_toml(path))
-    reader.allow("name", "description", "scenes", "seeds", "planner", "limits")
+    reader.allow("name", "description", "scenes", "seeds", "world", "planner", "limits")
     scenes, sources = _scenes(reader, path.parent)
+    worlds = _worlds(reader, scenes)
     return Matrix(
         name=reader.text("name", path.stem),
         description=reader.text("description", ""),
         scenes=scenes,
         sources=sources,
-        variants=_variants(reader),
+        variants=_variants(reader, simulated=any(worlds)),
         seeds=_seeds(reader),
         limits=_built(Limits, reader.table("limits")),
+        worlds=worlds,
     )
 
 
@@ -223,6 +250,46 @@ def _source(entry: str, folder: Path) -> str:
     return str(path.resolve()) if is_path else entry
 
 
+def _worlds(
+    reader: Reader, scenes: Sequence[Scene]
+) -> tuple[tuple[tuple[str, Mapping[str, Any]], ...], ...]:
+    """(name, settings) of the worlds of each scene."""
+    if "world" not in reader.values:
+        return ((),) * len(scenes)
+    tables = reader.tables("world")
+    _refuse_twins(reader, "worlds", [table.text("name") for table in tables])
+    found: dict[str, list[tuple[str, Mapping[str, Any]]]] = {scene.name: [] for scene in scenes}
+    for table in tables:
+        name = table.text("name")
+        table = table.renamed(f"world '{name}'")
+        table.allow("name", "scenes", "settings")
+        for scene in _scenes_of(table, scenes):
+            found[scene.name].append((name, _world_settings(table, scene)))
+    for name, worlds in found.items():
+        if not worlds:
+            raise reader.error(f"scenes: '{name}' is in none of the worlds. Name it in one.")
+    return tuple(tuple(worlds) for worlds in found.values())
+
+
+def _scenes_of(table: Reader, scenes: Sequence[Scene]) -> Sequence[Scene]:
+    if "scenes" not in table.values:
+        return scenes
+    names = table.texts("scenes")
+    known = [scene.name for scene in scenes]
+    for name in names:
+        if name not in known:
+            hint = table.near(name, known)
+            raise table.error(f"scenes: '{name}' is no scene of this matrix.{hint}")
+    return [scene for scene in scenes if scene.name in names]
+
+
+def _world_settings(table: Reader, scene: Scene) -> Mapping[str, Any]:
+    try:
+        return settings_as_data(world_settings(scene, table.table("settings").values))
+    except SceneError as error:
+        raise table.error(f"settings: {error}") from error
+
+
 def _seeds(reader: Reader) -> tuple[int, ...]:
     value = reader.take("seeds", "give a number of seeds, or a list of them")
     if isinstance(value, bool) or not isinstance(value, int | list):
@@ -240,16 +307,16 @@ def _seeds(reader: Reader) -> tuple[int, ...]:
     return tuple(value)
 
 
-def _variants(reader: Reader) -> tuple[Variant, ...]:
+def _variants(reader: Reader, *, simulated: bool) -> tuple[Variant, ...]:
     tables = reader.tables("planner")
     plugins = {plugin.name: plugin for plugin in available_planners()}
-    variants = [_variant(table, plugins) for table in tables]
+    variants = [_variant(table, plugins, simulated=simulated) for table in tables]
     _refuse_twins(reader, "planners", [variant.name for variant in variants])
     return tuple(variants)
 
 
-def _variant(table: Reader, plugins: Mapping[str, PluginInfo]) -> Variant:
-    table.allow("name", "planner", "settings", "budget")
+def _variant(table: Reader, plugins: Mapping[str, PluginInfo], *, simulated: bool) -> Variant:
+    table.allow("name", "planner", "settings", "budget", *(["cold"] if simulated else []))
     planner = table.text("planner")
     table = table.renamed(f"planner '{table.values.get('name', planner)}'")
     if planner not in plugins:
@@ -269,6 +336,7 @@ def _variant(table: Reader, plugins: Mapping[str, PluginInfo]) -> Variant:
         plugin=plugin,
         settings=settings,
         budget=_built(Budget, table.table("budget")),
+        cold=table.flag("cold"),
     )
 
 

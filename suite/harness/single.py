@@ -5,11 +5,14 @@ from typing import Any
 
 from suite.errors import KbgaBenchError
 from suite.exact import shortest_path
-from suite.harness.cell import planner_class, prepared_scene
+from suite.harness.prepared import planner_class, prepared_scene
 from suite.planner import Budget, PlanStatus
 from suite.plugins import available_planners, make_settings, settings_as_dict
-from suite.record import Cell, RunRecord
+from suite.record import Cell, RunRecord, World
 from suite.scene import scene_fingerprint
+
+COLD = "-cold"
+"""What the name of a planner that is made to plan afresh ends in; part of its random stream."""
 
 
 def cell_for(
@@ -20,8 +23,11 @@ def cell_for(
     query: str | None = None,
     settings: Mapping[str, Any] | None = None,
     budget: Budget | None = None,
+    world: World | None = None,
 ) -> Cell:
     """The cell of a single run; its variant, and so its random stream, is called as the planner.
+
+    One that is made to plan afresh in its world has a name of its own.
 
     Parameters
     ----------
@@ -37,6 +43,8 @@ def cell_for(
         Values or texts; what is left out keeps its default.
     budget : Budget, optional
         Default: no limit but the planner's own.
+    world : World, optional
+        Of a run that is simulated.
 
     Raises
     ------
@@ -52,13 +60,14 @@ def cell_for(
         scene_source=source,
         scene_hash=scene_fingerprint(scene, wanted),
         query=wanted.name,
-        variant=planner,
+        variant=planner + COLD if world is not None and world.cold else planner,
         planner=planner,
         distribution=plugin.distribution,
         version=plugin.version,
         settings=settings_as_dict(make_settings(found, settings or {})),
         budget=budget or Budget(),
         seed=seed,
+        world=world,
     )
 
 

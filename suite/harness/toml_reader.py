@@ -54,6 +54,13 @@ class Reader:
             raise self.error(f"{key} is {value!r}. Give a text.")
         return value
 
+    def flag(self, key: str) -> bool:
+        """True or false; false if the key is not there."""
+        value = self.values.get(key, False)
+        if not isinstance(value, bool):
+            raise self.error(f"{key} is {value!r}. Give true or false.")
+        return value
+
     def texts(self, key: str) -> list[str]:
         """A list of strings, not empty."""
         value = self.take(key, "give a list of texts")

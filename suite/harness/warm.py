@@ -21,7 +21,7 @@ from dataclasses import asdict, dataclass
 from importlib.machinery import ModuleSpec
 from typing import Any
 
-from suite.harness.cell import build_planner, exact_optimum, prepared_scene, referee
+from suite.harness.prepared import build_planner, exact_optimum, prepared_scene, referee
 from suite.quiet import end_quietly
 
 VARIABLE = "KBGA_BENCH_WARM"

@@ -5,6 +5,7 @@ empty; the way so far is a full line and the path ahead a broken one: grey tells
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 from string import ascii_lowercase
 from typing import Any
@@ -37,6 +38,9 @@ MOST_PANELS = 12
 COLUMNS = 4
 PANEL = 2.0
 """Width of a panel, inches."""
+
+TURN_M = 1.0
+"""A path ahead that becomes longer or shorter by more is news, metres."""
 
 FRAMES_PER_SECOND = 10
 """Frames for each simulated second, as long as they are not more than MOST_FRAMES."""
@@ -115,10 +119,41 @@ def plot_snapshots(run: Simulation, most: int = MOST_PANELS) -> Figure:
 
 
 def snapshot_times(run: Simulation, most: int = MOST_PANELS) -> list[float]:
-    """The moments that a sheet shows: evenly spread updates, the first one among them; the end."""
+    """The moments that a sheet shows: start and end, what happened between, and a fill.
+
+    Updates come first at which the way ahead changed or an obstacle was detected, each with the
+    update before it. The other panels go where the gaps are widest.
+    """
     times = [*update_times(run), run.trajectory.end]
-    chosen = np.unique(np.round(np.linspace(0, len(times) - 1, min(most, len(times)))).astype(int))
-    return [times[i] for i in chosen]
+    last = len(times) - 1
+    events = _turns(run) | set(run.detected.values())
+    pairs = [
+        i for event in sorted(events) if event in times for i in _with_one_before(times, event)
+    ]
+    chosen = set(list(dict.fromkeys([0, last, *pairs]))[:most])
+    while len(chosen) < min(most, len(times)):
+        others = set(range(last)) - chosen
+        chosen.add(max(sorted(others), key=lambda i: min(abs(i - c) for c in chosen)))
+    return [times[i] for i in sorted(chosen)]
+
+
+def _with_one_before(times: Sequence[float], event: float) -> list[int]:
+    number = times.index(event)
+    return [number, max(number - 1, 0)]
+
+
+def _turns(run: Simulation) -> set[float]:
+    """Times of the plans that are longer or shorter than what was left of the plan before."""
+    turns = set()
+    for old, new in pairwise(run.replans):
+        if old.cost is None or new.cost is None:
+            is_turn = (old.cost is None) != (new.cost is None)
+        else:
+            left = old.cost - run.settings.speed * (new.time - old.time)
+            is_turn = abs(new.cost - left) > TURN_M
+        if is_turn:
+            turns.add(new.time)
+    return turns
 
 
 def frame_times(run: Simulation) -> list[float]:

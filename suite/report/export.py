@@ -6,13 +6,23 @@ from pathlib import Path
 import pandas as pd
 
 from suite.errors import StoreError
-from suite.store import read_events, read_paths, read_runs, read_traces
+from suite.store import (
+    read_events,
+    read_paths,
+    read_replans,
+    read_runs,
+    read_simulations,
+    read_traces,
+)
+
+OF_SIMULATIONS = ("simulations", "replans")
+"""Files that only stores of simulated runs have."""
 
 
 def export_rows(
     store: Path, directory: Path, kind: str, *, leave_out: Collection[str] = ()
 ) -> list[Path]:
-    """Write runs, events, traces and paths, a file each.
+    """Write runs, events, traces and paths, simulations and replans, a file each.
 
     Parameters
     ----------
@@ -39,6 +49,8 @@ def export_rows(
         "events": read_events,
         "traces": read_traces,
         "paths": paths_frame,
+        "simulations": read_simulations,
+        "replans": read_replans,
     }
     folder = made_folder(directory)
     files = []
@@ -46,6 +58,8 @@ def export_rows(
         if name in leave_out:
             continue
         frame = read(store)
+        if frame.empty and name in OF_SIMULATIONS:
+            continue
         file = folder / f"{name}.{kind}"
         try:
             if kind == "parquet":

@@ -6,12 +6,14 @@ the new ones under one name would describe neither.
 
 import pandas as pd
 
-_NAME = ["scene", "query", "variant"]
+_NAME = ["scene", "query", "world", "variant"]
 _VERSION = [
     "scene_hash",
     "planner",
     "version",
     "settings",
+    "world_settings",
+    "cold",
     "budget_wall_s",
     "budget_generations",
     "budget_checks",
@@ -34,7 +36,8 @@ def newest(runs: pd.DataFrame) -> pd.DataFrame:
     if runs.empty:
         return runs
     version = runs.groupby(_VERSION, dropna=False).ngroup()
-    names = [runs[column] for column in _NAME]
-    last = runs["started_at"].groupby(names).transform("max") == runs["started_at"]
+    names = runs.groupby(_NAME, dropna=False).ngroup()
+    started = runs["started_at"].fillna("")
+    last = started.groupby(names).transform("max") == started
     current = version.where(last).groupby(names).transform("last")
     return runs[version == current]

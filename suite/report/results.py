@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import re
 from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
@@ -10,17 +11,28 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from suite.dynamic.plain import from_data
 from suite.errors import KbgaBenchError, StoreError
+from suite.report.dynamic_figures import plot_snapshots
 from suite.report.export import export_rows, made_folder
 from suite.report.figures import LINES, plot_scene_results, save
 from suite.report.newest import newest
+from suite.report.simulated import is_simulated
 from suite.report.study_figures import study_figures
 from suite.report.summary import feasible
 from suite.report.table import SUFFIX, Format, Table, render
 from suite.report.tables import all_tables
 from suite.scene import Query, Scene, scene_fingerprint
 from suite.scenes.catalogue import load_scene
-from suite.store import read_first_measures, read_paths, read_runs, read_sessions
+from suite.store import (
+    read_first_measures,
+    read_paths,
+    read_replans,
+    read_runs,
+    read_sessions,
+    read_simulation,
+    read_simulations,
+)
 
 MANIFEST = "manifest.json"
 
@@ -56,15 +68,33 @@ def write_results(store: Path, directory: Path, *, leave_out: Collection[str] = 
     current = newest(runs)
     scenes = _scenes(current)
     folder = made_folder(directory)
-    tables = all_tables(runs, read_first_measures(store))
+    tables = read_tables(store)
     files = write_tables(tables, folder, Format.MARKDOWN)
     files += write_tables(tables, folder, Format.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
-    files += _write_figures(current, read_paths(store), scenes, folder)
+    planned = current[~is_simulated(current)]
+    files += _write_figures(planned, read_paths(store), scenes, folder)
+    files += _write_snapshots(current[is_simulated(current)], store, folder)
     manifest = folder / MANIFEST
     made = _manifest(store, runs, folder, files, leave_out)
     _write_text(manifest, json.dumps(made, indent=2) + "\n")
     return [*files, manifest]
+
+
+def read_tables(store: Path) -> list[Table]:
+    """All tables of a store.
+
+    Raises
+    ------
+    StoreError
+        If it can't be read.
+    """
+    return all_tables(
+        read_runs(store),
+        read_first_measures(store),
+        simulations=read_simulations(store),
+        replans=read_replans(store),
+    )
 
 
 def write_tables(tables: Sequence[Table], directory: Path, style: Format) -> list[Path]:
@@ -110,7 +140,7 @@ def _write_figures(
         files.append(file)
     for scene, query in scenes:
         here = runs[(runs["scene"] == scene.name) & (runs["query"] == query.name)]
-        if here["variant"].nunique() > len(LINES):
+        if here.empty or here["variant"].nunique() > len(LINES):
             continue
         best, labels = _best_paths(here, paths)
         several = len(scene.queries) > 1
@@ -118,6 +148,24 @@ def _write_figures(
         save(plot_scene_results(scene, query, best, labels=labels), file)
         files.append(file)
     return files
+
+
+def _write_snapshots(runs: pd.DataFrame, store: Path, folder: Path) -> list[Path]:
+    """A sheet of the first run of the first planner in each world."""
+    files = []
+    for (source, world), group in runs.groupby(["scene_source", "world"], sort=False):
+        data = read_simulation(store, group["key"].iloc[0])
+        figure = plot_snapshots(from_data(load_scene(str(source)), data))
+        figure.suptitle(f"{data['scene']}, {world}: {group['variant'].iloc[0]}", fontsize=11)
+        file = folder / f"{data['scene']}-{_slug(str(world))}.png"
+        save(figure, file)
+        files.append(file)
+    return files
+
+
+def _slug(text: str) -> str:
+    """A text as a part of a file's name."""
+    return "-".join(re.findall(r"[a-z0-9]+", text.lower()))
 
 
 def _best_paths(

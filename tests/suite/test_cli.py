@@ -199,9 +199,11 @@ def test_a_picture_of_a_simulation_is_refused_before_it_is_run(error_of, tmp_pat
     assert message in error_of(*never, option, tmp_path / "x.txt")
 
 
-def test_a_planner_that_refuses_is_not_simulated(error_of):
-    said = error_of("simulate", "door", "--planner", "ompl-rrtstar", "--generations", 9)
-    assert "ompl-rrtstar refuses: ompl-rrtstar can't be limited by generations." in said
+def test_a_planner_that_refuses_is_not_simulated(kbga_bench):
+    wanted = ("simulate", "door", "--planner", "ompl-rrtstar", "--generations", 9)
+    said = kbga_bench(*wanted, code=1).out
+    assert "door / ompl-rrtstar / seed 0: refused" in said
+    assert "ompl-rrtstar can't be limited by generations." in said
 
 
 def test_generate_keeps_a_scene_as_a_file_that_is_the_same_scene(kbga_bench, tmp_path):

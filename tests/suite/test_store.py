@@ -5,13 +5,17 @@ import pytest
 
 from suite.errors import StoreError
 from suite.planner import PlanStatus
+from suite.record import World
 from suite.store import (
     open_store,
     read_events,
     read_first_measures,
     read_paths,
+    read_replans,
     read_runs,
     read_sessions,
+    read_simulation,
+    read_simulations,
     read_traces,
 )
 from tests.suite.harness.records import make_cell, make_record
@@ -43,6 +47,40 @@ def test_a_row_comes_back_as_it_was_written(file):
     assert row["details"] == '{"restarts":2.0}'
     assert not row["contended"]
     assert read_sessions(file) == [{"id": 1, "matrix": "m", "python": "3.11"}]
+
+
+SIMULATION = {
+    "outcome": "reached", "opening": "left", "time": 12.5, "waiting_time": 0.5, "hits": [],
+    "replans": [
+        {"time": 0.0, "changed": False, "status": "solved", "cost": 20.0, "optimum": 19.0,
+         "latency_s": 0.001, "generations": 15, "checks": 400, "path": [[0, 0], [1, 1]]},
+        {"time": 2.0, "changed": True, "status": "enclosed", "cost": None, "optimum": None,
+         "latency_s": None, "generations": None, "checks": None, "path": None},
+    ],
+}  # fmt: skip
+
+
+def test_a_simulated_run_comes_back_with_all_its_replans(file):
+    cell = make_cell(world=World("fast", {"speed": 5.0}, cold=True))
+    filled(file, make_record(cell, simulation=SIMULATION), make_record(make_cell(seed=1)))
+    row, static = read_runs(file).to_dict("records")
+    assert (row["world"], row["world_settings"], row["cold"]) == ("fast", '{"speed":5.0}', True)
+    assert not static["cold"]
+    assert not isinstance(static["world"], str)
+    assert read_simulations(file).to_dict("records") == [
+        {"key": cell.key, "outcome": "reached", "opening": "left", "hits": 0, "end_s": 12.5,
+         "waiting_s": 0.5},
+    ]  # fmt: skip
+    replans = read_replans(file)
+    assert replans["number"].tolist() == [0, 1]
+    assert replans["changed"].tolist() == [False, True]
+    assert replans["latency_s"].tolist()[0] == 0.001
+    assert replans[["cost", "latency_s", "generations"]].isna().to_numpy().tolist() == [
+        [False] * 3, [True] * 3,
+    ]  # fmt: skip
+    assert read_simulation(file, cell.key) == SIMULATION
+    with pytest.raises(StoreError, match="is no simulated run"):
+        read_simulation(file, "no such key")
 
 
 def test_the_measures_of_the_first_generation_come_without_the_whole_trace(file):

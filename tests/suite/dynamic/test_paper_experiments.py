@@ -1,13 +1,14 @@
 """What the paper's figures 11 and 12 and section III-E show, KBGA shows in our reconstructions."""
 
-from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
 import pytest
 
 from suite.dynamic.simulate import Simulation
-from suite.dynamic.single import Wanted, run_single, unhurt
+from suite.harness.cell import run_cell
+from suite.harness.single import cell_for
+from suite.harness.single_simulation import simulation_of, world_for
 from suite.planner import Budget
 
 SEEDS = range(20)
@@ -23,9 +24,23 @@ SLOW_ROBOT = {
 
 
 @cache
-def run(scene: str, seed: int, planner: str = "kbga", *, cold: bool = False, **world) -> Simulation:
-    world = {"charge": "zero", **world}
-    return run_single(Wanted(scene, planner, seed, cold=cold, world=world))
+def run(
+    scene: str,
+    seed: int,
+    planner: str = "kbga",
+    budget: Budget | None = None,
+    *,
+    cold: bool = False,
+    **world,
+) -> Simulation:
+    world = world_for(scene, {"charge": "zero", **world}, cold=cold)
+    done = simulation_of(run_cell(cell_for(scene, planner, seed=seed, world=world, budget=budget)))
+    assert done is not None
+    return done
+
+
+def unhurt(done: Simulation) -> bool:
+    return done.reached and not done.hits
 
 
 def gate_of(path) -> str:
@@ -88,15 +103,10 @@ def test_paths_are_as_good_as_what_is_known_allows(scene):
 
 @pytest.mark.parametrize("planner", ["visibility-graph", "plain-ga", "ompl-rrtstar"])
 def test_any_planner_can_be_asked(planner):
-    budget = {"wall_s": 0.02} if planner.startswith("ompl") else {}
-    from_the_door = Wanted("door", planner, 1, world={"time_limit": 30.0, "interval": 5.0})
-    done = run_single(from_the_door if not budget else with_budget(from_the_door, **budget))
+    budget = Budget(wall_s=0.02) if planner.startswith("ompl") else None
+    done = run("door", 1, planner, budget, time_limit=30.0, interval=5.0, charge="measured")
     assert len(done.replans) >= 1
     assert done.hits == ()
-
-
-def with_budget(wanted: Wanted, **budget) -> Wanted:
-    return replace(wanted, budget=Budget(**budget))
 
 
 def test_kbga_can_be_made_to_plan_afresh():

@@ -10,10 +10,10 @@ from shapely.affinity import translate
 from kbga.plugin import KBGAPlanner
 from suite.dynamic.settings import world_settings
 from suite.dynamic.simulate import ENCLOSED, Simulation, simulate
-from suite.dynamic.single import stream
 from suite.dynamic.trajectory import make_trajectory
 from suite.dynamics import Dynamics, Removal, constant_speed
 from suite.geometry.tolerances import HIT_DEPTH
+from suite.harness.prepared import named_stream
 from suite.planner import Budget
 from suite.scene import Obstacle, Scene, make_scene
 from suite.scenes.moving import TIME_LIMIT, moving
@@ -34,7 +34,7 @@ SEEDS = [
 def run(seed: int) -> Simulation:
     scene = moving(seed)
     query = scene.query()
-    replanner = KBGAPlanner().replanner(stream(scene.name, query.name, "kbga", seed))
+    replanner = KBGAPlanner().replanner(named_stream(scene.name, query.name, "kbga", seed))
     settings = world_settings(scene, {"charge": "zero"})
     return simulate(scene, query, replanner, settings, FEW_GENERATIONS)
 

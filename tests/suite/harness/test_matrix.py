@@ -147,3 +147,70 @@ def test_a_matrix_without_planners_is_refused(written):
 def test_an_unknown_matrix_is_refused_with_the_names_that_there_are():
     with pytest.raises(MatrixError, match=r"no matrix 'nonsense'.*paper-static"):
         load_matrix("nonsense")
+
+
+# Worlds
+
+SIMULATED = """
+scenes = ["door", "unknown_obstacles"]
+seeds = 2
+
+[[world]]
+name = "own"
+
+[[world]]
+name = "fast"
+scenes = ["door"]
+settings = { speed = 5.0 }
+
+[[planner]]
+planner = "kbga"
+
+[[planner]]
+name = "kbga-cold"
+planner = "kbga"
+cold = true
+"""
+
+
+def test_every_scene_is_driven_through_in_each_of_its_worlds(written):
+    cells = load_matrix(written(SIMULATED)).cells()
+    assert list(dict.fromkeys((c.scene, c.world.name) for c in cells)) == [
+        ("door", "own"), ("door", "fast"), ("unknown_obstacles", "own"),
+    ]  # fmt: skip
+    assert len(cells) == 3 * 2 * 2
+    assert len({c.key for c in cells}) == len(cells)
+    assert {(c.variant, c.world.cold) for c in cells} == {("kbga", False), ("kbga-cold", True)}
+    speeds = {(c.scene, c.world.name): c.world.settings["speed"] for c in cells}
+    assert speeds == {
+        ("door", "own"): 2.0,
+        ("door", "fast"): 5.0,
+        ("unknown_obstacles", "own"): 2.0,
+    }
+
+
+def test_a_simulated_run_is_not_killed_after_the_time_of_one_plan(written):
+    text = SIMULATED + "budget = { wall_s = 0.1 }\n"
+    matrix = load_matrix(written(text))
+    assert matrix.limits.run_s(matrix.cells()[-1]) == matrix.limits.wall_s
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('["door"]', '["dor"]', "'dor' is no scene of this matrix. Did you mean 'door'?"),
+        ("speed = 5.0", "speed = 0", "settings: world: speed is 0."),
+        ("speed = 5.0", "sped = 5.0", "world: it holds 'sped'. It takes speed, interval"),
+        ("speed = 5.0", "charge = 'none'", "charge is 'none'. It must be 'measured' or 'zero'."),
+        ('name = "own"', 'name = "fast"', "two worlds are named 'fast'"),
+        ('name = "own"', 'name = "own"\nscenes = ["door"]', "'unknown_obstacles' is in none"),
+        ("cold = true", "cold = 1", "planner 'kbga-cold': cold is 1. Give true or false."),
+    ],
+)  # fmt: skip
+def test_a_world_that_cannot_be_is_refused(written, old, new, message):
+    assert message in refused(written(SIMULATED.replace(old, new)))
+
+
+def test_only_simulated_runs_can_be_cold(written):
+    said = refused(written(GOOD + "cold = true\n"))
+    assert "unknown key 'cold'" in said

@@ -69,10 +69,23 @@ def test_of_many_updates_a_sheet_shows_twelve_moments_the_first_and_the_last_amo
     times = snapshot_times(run)
     assert len(times) == 12
     assert (times[0], times[-1]) == (0.0, run.trajectory.end)
-    assert np.ptp(np.diff(times[:-1])) <= 0.25
+    assert times == sorted(set(times))
+    # No gap is left that is more than twice another, in steps of updates.
+    assert np.diff(times).max() <= 2 * 36 * 0.25 / 11 + 0.25
     figure = plot_snapshots(run)
     assert len(panels(figure)) == 12
     plt.close(figure)
+
+
+def test_the_update_that_detects_an_obstacle_is_shown_and_the_one_before_it():
+    run = run_among(HIDDEN, interval=0.25)
+    (detected,) = run.detected.values()
+    assert {detected - 0.25, detected} <= set(snapshot_times(run, most=4))
+
+
+def test_the_update_that_changes_the_way_ahead_is_shown_and_the_one_before_it():
+    run = run_among(Obstacle("late", box(8, 0, 12, 15), Dynamics(appears=2.25)), interval=0.25)
+    assert snapshot_times(run, most=4) == [0.0, 2.0, 2.25, run.trajectory.end]
 
 
 def test_one_legend_names_what_is_in_the_panels_and_nothing_else(sheet):

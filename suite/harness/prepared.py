@@ -1,0 +1,64 @@
+"""What runs need and processes keep: scenes, their optima and referees, planners, the stream."""
+
+import zlib
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from suite.exact import shortest_path
+from suite.planner import Planner
+from suite.plugins import load_planner, make_settings
+from suite.record import Cell
+from suite.referee import Referee
+from suite.scene import Scene
+from suite.scenes.catalogue import load_scene
+
+
+def stream(cell: Cell) -> np.random.Generator:
+    """The random stream of a cell: another one for each seed, scene, query and variant."""
+    return named_stream(cell.scene, cell.query, cell.variant, cell.seed)
+
+
+def named_stream(scene: str, query: str, variant: str, seed: int) -> np.random.Generator:
+    """The random stream of a run of these names."""
+    return np.random.default_rng([seed, zlib.crc32(f"{scene}/{query}/{variant}".encode())])
+
+
+@lru_cache(maxsize=64)
+def prepared_scene(source: str) -> Scene:
+    """A scene with its arrangement computed; kept, so that a warmed process hands it on."""
+    scene = load_scene(source)
+    # Touching the cached property builds it.
+    _ = scene.arrangement
+    return scene
+
+
+@lru_cache(maxsize=64)
+def referee(source: str) -> Referee:
+    """The referee of a scene."""
+    return Referee(prepared_scene(source))
+
+
+@lru_cache(maxsize=256)
+def exact_optimum(source: str, query: str) -> float | None:
+    """Length of the exact shortest path of a query, metres; None if there is no path."""
+    scene = prepared_scene(source)
+    stored = scene.stored_optimum(scene.query(query))
+    if stored is not None:
+        return stored
+    length = shortest_path(scene, scene.query(query)).length
+    return length if np.isfinite(length) else None
+
+
+@lru_cache(maxsize=256)
+def planner_class(name: str) -> type[Planner]:
+    """The class of a plugin; kept, because finding it reads the metadata of every package."""
+    return load_planner(name)
+
+
+def build_planner(name: str, settings: Mapping[str, Any]) -> Planner:
+    """A planner of that plugin name with those settings."""
+    found = planner_class(name)
+    return found(make_settings(found, settings))

@@ -1,0 +1,111 @@
+"""A single simulated run as ``kbga-bench simulate`` asks for it, and what came of it."""
+
+from collections.abc import Mapping
+from statistics import median
+from typing import Any
+
+from suite.dynamic.plain import from_data, settings_as_data
+from suite.dynamic.settings import world_settings
+from suite.dynamic.simulate import Simulation
+from suite.harness import single
+from suite.harness.prepared import prepared_scene
+from suite.planner import PlanStatus
+from suite.record import RunRecord, World
+
+
+def world_for(
+    source: str, overrides: Mapping[str, Any] | None = None, *, cold: bool = False
+) -> World:
+    """The world of a single run.
+
+    Parameters
+    ----------
+    source : str
+        Catalogue name or file of the scene.
+    overrides : mapping, optional
+        Fields of WorldSettings that are not to be as the scene wants them; None leaves one.
+    cold : bool
+        Plan afresh at every update, though the planner has a replanner of its own.
+
+    Raises
+    ------
+    SceneError
+        If scene or settings can't be used.
+    """
+    settings = world_settings(prepared_scene(source), overrides)
+    return World("", settings_as_data(settings), cold)
+
+
+def simulation_of(record: RunRecord) -> Simulation | None:
+    """The simulation that a record holds; None if it never began."""
+    if record.simulation is None:
+        return None
+    return from_data(prepared_scene(record.cell.scene_source), record.simulation)
+
+
+def as_data(record: RunRecord) -> dict[str, Any]:
+    """What came of a run, as plain data for JSON.
+
+    Returns
+    -------
+    dict
+        What :func:`suite.dynamic.plain.as_data` gives, and whose run it was.
+    """
+    cell = record.cell
+    return {
+        "planner": cell.planner,
+        "variant": cell.variant,
+        "seed": cell.seed,
+        "settings": dict(cell.settings),
+        "budget": cell.budget_as_dict,
+        "status": str(record.status),
+        "reason": record.reason,
+        **(record.simulation or {}),
+    }
+
+
+def as_text(record: RunRecord) -> str:
+    """What came of a run, in a few lines for people."""
+    data = record.simulation
+    if data is None:
+        return single.as_text(record)
+    hits = ", ".join(_hit_as_text(hit) for hit in data["hits"]) or "never"
+    gates = ", ".join(f"{gate['gate']} at {gate['time']:.2f} s" for gate in data["gates"])
+    lines = [
+        f"{record.cell.label}: {data['outcome']}",
+        f"  hit          {hits}",
+        f"  openings     {gates or 'none'}",
+        f"  time         {data['time']:.2f} s, of which {data['waiting_time']:.2f} s waiting",
+        f"  length       {data['length']:.3f} m{_exact_length(record)}",
+        f"  replans      {len(data['replans'])}{_latencies(data['replans'])}",
+    ]
+    return "\n".join(lines + [_replan_as_text(replan) for replan in data["replans"]])
+
+
+def unhurt(record: RunRecord) -> bool:
+    """Whether the robot came to the goal and was never hit."""
+    return record.status is PlanStatus.SOLVED
+
+
+def _hit_as_text(hit: Mapping[str, Any]) -> str:
+    x, y = hit["place"]
+    return f"by {hit['obstacle']} at {hit['time']:.2f} s in ({x:.3f}, {y:.3f})"
+
+
+def _exact_length(record: RunRecord) -> str:
+    if record.optimum is None:
+        return ""
+    return f" (with the exact shortest path of each update {record.optimum:.3f} m)"
+
+
+def _latencies(replans: list[Mapping[str, Any]]) -> str:
+    known = [1e3 * r["latency_s"] for r in replans if r["latency_s"] is not None]
+    return f", median {median(known):.2f} ms, worst {max(known):.2f} ms" if known else ""
+
+
+def _replan_as_text(replan: Mapping[str, Any]) -> str:
+    cost = "" if replan["cost"] is None else f"  {replan['cost']:.3f} m"
+    optimum = "" if replan["optimum"] is None else f"  (optimum {replan['optimum']:.3f} m)"
+    latency = "" if replan["latency_s"] is None else f"  {1e3 * replan['latency_s']:.2f} ms"
+    news = "  new" if replan["changed"] else ""
+    return f"    {replan['time']:7.2f} s  {replan['status']}{latency}{cost}{optimum}{news}"
