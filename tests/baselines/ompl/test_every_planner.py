@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import shapely
 
+from baselines.ompl.oneshot import RRTConnectPlanner
 from baselines.ompl.roadmap import PRMstarPlanner
 from baselines.ompl.watched import (
     AORRTCPlanner,
@@ -30,7 +31,10 @@ PLANNERS = (
     BITstarPlanner,
     AORRTCPlanner,
     PRMstarPlanner,
+    RRTConnectPlanner,
 )
+
+WITHOUT_ITERATIONS = (AORRTCPlanner, PRMstarPlanner, RRTConnectPlanner)
 
 each = pytest.mark.parametrize("planner", [p() for p in PLANNERS], ids=lambda p: p.name)
 
@@ -100,7 +104,7 @@ def test_improvements_fall_and_the_last_is_the_path(planner, budget):
 @each
 def test_planners_that_count_iterations_say_in_which_the_best_was_found(planner):
     made = run(planner, SCENES["one box"], Budget(checks=5000))
-    if type(planner) in (AORRTCPlanner, PRMstarPlanner):
+    if isinstance(planner, WITHOUT_ITERATIONS):
         assert (made.generation_of_best, made.generations) == (None, None)
     else:
         assert 0 < made.generation_of_best <= made.generations

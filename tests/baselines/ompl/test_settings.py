@@ -2,6 +2,7 @@ import dataclasses
 
 import pytest
 
+from baselines.ompl.oneshot import RRTConnectPlanner, RRTConnectSettings
 from baselines.ompl.roadmap import PRMstarPlanner, PRMstarSettings
 from baselines.ompl.watched import (
     AORRTCPlanner,
@@ -40,6 +41,7 @@ EVERY_SETTING = (
         drop_samples_on_prune=True,
     )),
     AORRTCPlanner(AORRTCSettings(range=2.0)),
+    RRTConnectPlanner(RRTConnectSettings(range=2.0, intermediate_states=True, simplify=False)),
     PRMstarPlanner(PRMstarSettings(slice_s=0.01, slice_checks=200, slice_growth=0.2)),
 )  # fmt: skip
 
@@ -79,6 +81,7 @@ def test_a_short_range_makes_many_waypoints():
     (BITstarSettings, {"samples_per_batch": 0}),
     (BITstarSettings, {"prune_threshold": 2.0}),
     (AORRTCSettings, {"range": -1.0}),
+    (RRTConnectSettings, {"range": 0.0}),
     (PRMstarSettings, {"slice_s": 0}),
     (PRMstarSettings, {"slice_checks": 0}),
     (PRMstarSettings, {"slice_growth": 0}),
