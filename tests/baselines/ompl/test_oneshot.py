@@ -1,29 +1,82 @@
-import gc
-import weakref
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from baselines.ompl.adapter import Problem
-from baselines.ompl.oneshot import RRTConnectPlanner, RRTConnectSettings
+from baselines.ompl.oneshot import (
+    BFMTPlanner,
+    FMTPlanner,
+    RRTConnectPlanner,
+    RRTConnectSettings,
+    RRTPlanner,
+    SimplifiedPlanner,
+)
 from suite.planner import Budget, PlanAfresh, PlanStatus, Recorder
 from suite.referee import Referee
 from suite.scenes.catalogue import load_scene
-from tests.baselines.ompl.laboratory import SCENES, run
+from tests.baselines.ompl.laboratory import RING, SCENES, run, scene_of
 
-SIMPLIFIED = (RRTConnectPlanner(),)
+MARCHING = (FMTPlanner, BFMTPlanner)
+SIMPLIFIED = (RRTPlanner, RRTConnectPlanner)
+ONE_SHOT = (*SIMPLIFIED, *MARCHING)
 
-each_simplified = pytest.mark.parametrize("planner", SIMPLIFIED, ids=lambda p: p.name)
+each = pytest.mark.parametrize("planner", [p() for p in ONE_SHOT], ids=lambda p: p.name)
+each_simplified = pytest.mark.parametrize(
+    "planner", [p() for p in SIMPLIFIED], ids=lambda p: p.name
+)
+each_marching = pytest.mark.parametrize("planner", MARCHING, ids=lambda p: p.name)
 
 PLENTY = Budget(checks=10**6)
+ENCLOSED = {
+    "goal": scene_of([RING], (1, 5), (6, 6)),
+    "start": scene_of([RING], (6, 6), (1, 5)),
+}
 
 
-def test_a_oneshot_planner_ends_with_its_path_and_says_that_it_is_not_anytime():
-    planner = RRTConnectPlanner()
+@each
+def test_a_oneshot_planner_ends_with_its_path_and_says_that_it_is_not_anytime(planner):
     assert not planner.abilities.anytime
     assert planner.abilities.budgets == {"wall_s", "checks"}
     assert run(planner, SCENES["one box"], PLENTY).checks < 10_000
+
+
+@each
+def test_the_budget_that_a_path_needs_is_enough_and_one_check_less_is_not(planner):
+    if isinstance(planner, SimplifiedPlanner):
+        planner = plain(planner)
+    scene = load_scene("clustered")
+    whole = run(planner, scene, PLENTY)
+    enough = run(planner, scene, Budget(checks=whole.checks + 1))
+    assert enough.path.tobytes() == whole.path.tobytes()
+    short = run(planner, scene, Budget(checks=whole.checks - 1))
+    assert (short.status, short.path) == (PlanStatus.EXHAUSTED, None)
+
+
+# FMT* and BFMT*
+
+
+@each_marching
+@pytest.mark.parametrize("checks", [1, 2, 3, 500, 1100])
+def test_a_budget_that_ends_in_the_samples_is_exhausted(planner, checks):
+    made = run(planner(), SCENES["one box"], Budget(checks=checks))
+    assert (made.status, made.checks) == (PlanStatus.EXHAUSTED, checks)
+    assert made.details["state_checks"] <= checks
+
+
+@each_marching
+@pytest.mark.parametrize("end", ENCLOSED)
+def test_without_extension_an_enclosed_end_ends_the_run_early(planner, end):
+    made = run(planner(planner.Settings(extended=False)), ENCLOSED[end], PLENTY)
+    assert made.status is PlanStatus.EXHAUSTED
+    assert made.checks < 10_000
+
+
+@each_marching
+@pytest.mark.parametrize("end", ENCLOSED)
+def test_with_extension_an_enclosed_end_takes_the_whole_budget(planner, end):
+    made = run(planner(), ENCLOSED[end], Budget(checks=10_000))
+    assert (made.status, made.checks) == (PlanStatus.EXHAUSTED, 10_000)
+    assert run(planner(), ENCLOSED[end], Budget(wall_s=0.05)).status is PlanStatus.EXHAUSTED
 
 
 # Simplifier
@@ -94,17 +147,6 @@ def test_a_clock_that_runs_out_in_the_simplifier_leaves_a_free_path(planner):
 
 
 @each_simplified
-def test_ten_runs_in_one_process_are_the_same(planner):
-    scene = load_scene("obstacles_20")
-    found = run(plain(planner), scene, PLENTY, seed=5).checks
-    for checks in (found, found + 50, 10**6):
-        paths = {
-            run(planner, scene, Budget(checks=checks), seed=5).path.tobytes() for _ in range(10)
-        }
-        assert len(paths) == 1
-
-
-@each_simplified
 def test_it_replans_from_new_places_for_ever(planner):
     scene = load_scene("obstacles_20")
     query = scene.query()
@@ -119,22 +161,6 @@ def test_it_replans_from_new_places_for_ever(planner):
         onward = made.path[0] + step * min(1.0, 1.0 / np.linalg.norm(step))
         query = type(query)(query.name, onward, query.goal)
         made = replanner.update(scene, query, Budget(wall_s=0.02), Recorder())
-
-
-@each_simplified
-@pytest.mark.parametrize("budget", [Budget(checks=80), PLENTY], ids=str)
-def test_nothing_of_a_run_stays_in_memory(planner, budget, monkeypatch):
-    alive = []
-    set_up = Problem.set_up
-
-    def remember(problem):
-        alive.extend((weakref.ref(problem), weakref.ref(problem.collision)))
-        set_up(problem)
-
-    monkeypatch.setattr(Problem, "set_up", remember)
-    run(planner, load_scene("obstacles_20"), budget)
-    gc.collect()
-    assert [reference() for reference in alive] == [None, None]
 
 
 def test_the_simplifier_can_be_switched_off():
