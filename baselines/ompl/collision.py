@@ -51,9 +51,11 @@ class ExactCollision(ob.MotionValidator):  # type: ignore[misc]
 
     def is_free(self, state: Any) -> bool:
         """Whether a point is free; it counts as the check of a segment, which it costs."""
-        self.state_checks += 1
+        before = self.checks
         x, y = state[0], state[1]
-        return self._check(x, y, x, y)
+        is_free = self._check(x, y, x, y)
+        self.state_checks += self.checks - before
+        return is_free
 
     def _check(self, ax: float, ay: float, bx: float, by: float) -> bool:
         if self.checks >= self.stop_at:

@@ -1,4 +1,4 @@
-"""PRM*: growing a roadmap and searching it take turns, so that a counted run is reproducible."""
+"""PRM and PRM*: growing and searching take turns, so that a counted run is reproducible."""
 
 import time
 from collections.abc import Callable
@@ -12,7 +12,7 @@ from ompl import geometric as og
 
 from baselines.ompl.adapter import OmplPlanner, Problem
 from baselines.ompl.collision import Point, do_nothing
-from baselines.ompl.settings import ABOVE_0, OmplSettings, ours
+from baselines.ompl.settings import ABOVE_0, AT_LEAST_1, OmplSettings, bound, ours
 from suite.exact import path_length
 from suite.planner import Recorder
 
@@ -25,7 +25,7 @@ NO_LIMIT_S = 1e6
 
 @dataclass(frozen=True, slots=True)
 class PRMstarSettings(OmplSettings):
-    """Settings of PRM*; OMPL binds none of its own.
+    """Settings of any roadmap; OMPL binds none of its own for PRM*.
 
     slice_s : seconds of growth after which the roadmap is first searched; ours.
     slice_checks : the same in checks, for runs that are limited by them; ours.
@@ -36,6 +36,17 @@ class PRMstarSettings(OmplSettings):
     slice_s: float = ours(0.005, ABOVE_0)
     slice_checks: int = ours(500, ABOVE_0)
     slice_growth: float = ours(0.1, ABOVE_0)
+
+
+@dataclass(frozen=True, slots=True)
+class PRMSettings(PRMstarSettings):
+    """Settings of PRM: those of :class:`PRMstarSettings`, and its neighbours.
+
+    max_nearest_neighbors : neighbours to which a new milestone is connected; None leaves OMPL's
+        10. PRM* needs more and more of them.
+    """
+
+    max_nearest_neighbors: int | None = bound("setMaxNearestNeighbors", AT_LEAST_1)
 
 
 @dataclass(slots=True)
@@ -65,18 +76,14 @@ class PausableSampler(ob.ValidStateSampler):  # type: ignore[misc]
         return not self._pause.is_on and bool(self._uniform.sampleNear(state, near, distance))
 
 
-class PRMstarPlanner(OmplPlanner):
-    """PRM* (Karaman and Frazzoli 2011): a roadmap that grows, searched again and again.
+class RoadmapPlanner(OmplPlanner):
+    """Base of PRM and PRM*: a roadmap that grows, searched again and again.
 
     OMPL's own ``solve`` searches in a second thread while the first one grows the roadmap, and
     after 0.4 s adds random walks: its result depends on how fast the machine is. So here growth
     and search take turns: ``growRoadmap`` until a slice of the budget is spent, then ``solve``
     with the sampler paused. A run that is limited by checks is then the same everywhere.
     """
-
-    name: ClassVar[str] = "ompl-prmstar"
-    Settings: ClassVar[type[Any]] = PRMstarSettings
-    ompl_class: ClassVar[Callable[[Any], Any]] = og.PRMstar
 
     def _run(self, problem: Problem, recorder: Recorder) -> NDArray[np.float64] | None:
         search = _RoadmapSearch(problem)
@@ -185,3 +192,22 @@ class _Components:
 
     def join(self, a: Point, b: Point) -> None:
         self._parent[self.root(a)] = self.root(b)
+
+
+class PRMPlanner(RoadmapPlanner):
+    """PRM (Kavraki et al. 1996): each milestone is connected to a few neighbours.
+
+    Its paths need not come to the optimum, however large the roadmap.
+    """
+
+    name: ClassVar[str] = "ompl-prm"
+    Settings: ClassVar[type[Any]] = PRMSettings
+    ompl_class: ClassVar[Callable[[Any], Any]] = og.PRM
+
+
+class PRMstarPlanner(RoadmapPlanner):
+    """PRM* (Karaman and Frazzoli 2011): the more milestones, the more neighbours of each."""
+
+    name: ClassVar[str] = "ompl-prmstar"
+    Settings: ClassVar[type[Any]] = PRMstarSettings
+    ompl_class: ClassVar[Callable[[Any], Any]] = og.PRMstar

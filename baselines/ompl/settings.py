@@ -26,7 +26,7 @@ def bound(setter: str, rule: Rule | None = None) -> Any:
     return field(default=None, metadata={"setter": setter, "rule": rule})
 
 
-def ours(default: float, rule: Rule) -> Any:
+def ours(default: float, rule: Rule | None = None) -> Any:
     """Declare a setting of the adapter, which OMPL does not know."""
     return field(default=default, metadata={"rule": rule})
 

@@ -67,7 +67,10 @@ def row(name: str):
 
 
 def test_the_planners_of_this_project_are_declared():
-    ompl = ("rrtstar", "informedrrtstar", "sorrtstar", "bitstar", "aorrtc", "prmstar")
+    ompl = (
+        "rrtstar", "informedrrtstar", "sorrtstar", "bitstar", "aorrtc", "prm", "prmstar", "rrt",
+        "rrtconnect", "fmt", "bfmt",
+    )  # fmt: skip
     declared = {"kbga", "plain-ga", "visibility-graph", *(f"ompl-{name}" for name in ompl)}
     assert declared <= set(planner_names())
 

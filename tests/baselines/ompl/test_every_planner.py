@@ -1,6 +1,8 @@
+import gc
 import subprocess
 import sys
 import time
+import weakref
 from itertools import pairwise
 from pathlib import Path
 
@@ -8,7 +10,15 @@ import numpy as np
 import pytest
 import shapely
 
-from baselines.ompl.roadmap import PRMstarPlanner
+from baselines.ompl.adapter import Problem
+from baselines.ompl.oneshot import (
+    BFMTPlanner,
+    FMTPlanner,
+    RRTConnectPlanner,
+    RRTPlanner,
+    SimplifiedPlanner,
+)
+from baselines.ompl.roadmap import PRMPlanner, PRMstarPlanner
 from baselines.ompl.watched import (
     AORRTCPlanner,
     BITstarPlanner,
@@ -29,8 +39,15 @@ PLANNERS = (
     SORRTstarPlanner,
     BITstarPlanner,
     AORRTCPlanner,
+    PRMPlanner,
     PRMstarPlanner,
+    RRTPlanner,
+    RRTConnectPlanner,
+    FMTPlanner,
+    BFMTPlanner,
 )
+
+WITH_ITERATIONS = (RRTstarPlanner, InformedRRTstarPlanner, SORRTstarPlanner, BITstarPlanner)
 
 each = pytest.mark.parametrize("planner", [p() for p in PLANNERS], ids=lambda p: p.name)
 
@@ -57,7 +74,9 @@ def test_a_longer_run_comes_close_to_the_optimum_of_a_paper_scene(planner):
     made = run(planner, scene, Budget(checks=8000))
     seen = Referee(scene).judge(scene.query(), made.path)
     assert seen.valid, seen.reason
-    assert 1.0 <= seen.length / shortest_path(scene, scene.query()).length < 1.1
+    # The first path that is found may pass the obstacles on the wrong side, however simple.
+    bound = 1.25 if isinstance(planner, SimplifiedPlanner) else 1.1
+    assert 1.0 <= seen.length / shortest_path(scene, scene.query()).length < bound
 
 
 @each
@@ -100,10 +119,10 @@ def test_improvements_fall_and_the_last_is_the_path(planner, budget):
 @each
 def test_planners_that_count_iterations_say_in_which_the_best_was_found(planner):
     made = run(planner, SCENES["one box"], Budget(checks=5000))
-    if type(planner) in (AORRTCPlanner, PRMstarPlanner):
-        assert (made.generation_of_best, made.generations) == (None, None)
-    else:
+    if isinstance(planner, WITH_ITERATIONS):
         assert 0 < made.generation_of_best <= made.generations
+    else:
+        assert (made.generation_of_best, made.generations) == (None, None)
 
 
 # Budgets
@@ -159,7 +178,7 @@ def test_generations_alone_are_refused_with_a_reason(planner):
 
 @each
 def test_another_seed_gives_another_path(planner):
-    paths = [run(planner, SCENES["one box"], Budget(checks=2000), seed).path for seed in (1, 2)]
+    paths = [run(planner, SCENES["one box"], Budget(checks=4000), seed).path for seed in (1, 2)]
     assert not np.array_equal(*paths)
 
 
@@ -192,3 +211,30 @@ def test_same_seed_and_checks_give_the_same_path_in_another_process(planner):
     assert printed[0].stdout == printed[1].stdout
     assert len(printed[0].stdout) > 100
     assert printed[0].stderr == ""  # OMPL's log and nanobind's reports of leaks stay away
+
+
+@each
+def test_ten_runs_in_one_process_are_the_same(planner):
+    scene = load_scene("obstacles_20")
+    paths = [run(planner, scene, Budget(checks=3000), seed=5).path.tobytes() for _ in range(10)]
+    assert len(set(paths)) == 1
+
+
+# Memory
+
+
+@each
+@pytest.mark.parametrize("checks", [80, 3000])
+def test_nothing_of_a_run_stays_in_memory(planner, checks, monkeypatch):
+    alive = []
+    set_up = Problem.set_up
+
+    def remember(problem):
+        alive.extend((weakref.ref(problem), weakref.ref(problem.collision)))
+        set_up(problem)
+
+    monkeypatch.setattr(Problem, "set_up", remember)
+    run(planner, load_scene("obstacles_20"), Budget(checks=checks))
+    gc.collect()
+    assert alive
+    assert [reference() for reference in alive] == [None] * len(alive)

@@ -2,7 +2,17 @@ import dataclasses
 
 import pytest
 
-from baselines.ompl.roadmap import PRMstarPlanner, PRMstarSettings
+from baselines.ompl.oneshot import (
+    BFMTPlanner,
+    BFMTSettings,
+    FMTPlanner,
+    FMTSettings,
+    RRTConnectPlanner,
+    RRTConnectSettings,
+    RRTPlanner,
+    RRTSettings,
+)
+from baselines.ompl.roadmap import PRMPlanner, PRMSettings, PRMstarPlanner, PRMstarSettings
 from baselines.ompl.watched import (
     AORRTCPlanner,
     AORRTCSettings,
@@ -23,6 +33,11 @@ TREE = {
     "tree_pruning": True, "prune_threshold": 0.1, "new_state_rejection": True,
 }  # fmt: skip
 
+MARCHING = {
+    "num_samples": 300, "radius_multiplier": 1.3, "nearest_k": False, "cache_cc": False,
+    "heuristics": False, "extended": False,
+}  # fmt: skip
+
 EVERY_SETTING = (
     RRTstarPlanner(RRTstarSettings(
         **TREE, informed_sampling=True, sample_rejection=False, ordered_sampling=False,
@@ -40,6 +55,13 @@ EVERY_SETTING = (
         drop_samples_on_prune=True,
     )),
     AORRTCPlanner(AORRTCSettings(range=2.0)),
+    RRTPlanner(RRTSettings(range=2.0, intermediate_states=True, goal_bias=0.2, simplify=False)),
+    RRTConnectPlanner(RRTConnectSettings(range=2.0, intermediate_states=True, simplify=False)),
+    FMTPlanner(FMTSettings(**MARCHING)),
+    BFMTPlanner(BFMTSettings(**MARCHING)),
+    PRMPlanner(PRMSettings(
+        slice_s=0.01, slice_checks=200, slice_growth=0.2, max_nearest_neighbors=5,
+    )),
     PRMstarPlanner(PRMstarSettings(slice_s=0.01, slice_checks=200, slice_growth=0.2)),
 )  # fmt: skip
 
@@ -58,8 +80,22 @@ def test_every_setting_reaches_ompl(planner):
 @pytest.mark.parametrize("planner", EVERY_SETTING[:-1], ids=lambda p: p.name)
 def test_settings_of_ompl_change_the_run(planner):
     default = type(planner)()
-    plans = [run(p, SCENES["one box"], Budget(checks=3000)) for p in (planner, default)]
-    assert plans[0].claimed_cost != plans[1].claimed_cost
+    costs = [
+        run(p, SCENES["one box"], Budget(checks=4000)).claimed_cost for p in (planner, default)
+    ]
+    assert None not in costs
+    assert costs[0] != costs[1]
+
+
+@pytest.mark.parametrize("planner", [FMTPlanner, BFMTPlanner], ids=lambda p: p.name)
+def test_the_number_of_samples_is_a_setting(planner):
+    seen = [
+        run(planner(planner.Settings(num_samples=n)), SCENES["one box"], Budget(checks=10_000))
+        for n in (100, 1000)
+    ]
+    assert 100 <= seen[0].details["state_checks"] < 300
+    assert 1000 <= seen[1].details["state_checks"] < 2000
+    assert seen[1].claimed_cost < seen[0].claimed_cost
 
 
 def test_a_short_range_makes_many_waypoints():
@@ -79,6 +115,12 @@ def test_a_short_range_makes_many_waypoints():
     (BITstarSettings, {"samples_per_batch": 0}),
     (BITstarSettings, {"prune_threshold": 2.0}),
     (AORRTCSettings, {"range": -1.0}),
+    (RRTConnectSettings, {"range": 0.0}),
+    (RRTSettings, {"goal_bias": -0.1}),
+    (FMTSettings, {"num_samples": 0}),
+    (FMTSettings, {"nearest_k": False}),
+    (BFMTSettings, {"radius_multiplier": 0.9}),
+    (PRMSettings, {"max_nearest_neighbors": 0}),
     (PRMstarSettings, {"slice_s": 0}),
     (PRMstarSettings, {"slice_checks": 0}),
     (PRMstarSettings, {"slice_growth": 0}),

@@ -1,6 +1,3 @@
-import gc
-import weakref
-
 import numpy as np
 import pytest
 import shapely
@@ -15,7 +12,7 @@ from baselines.ompl.watched import (
 )
 from suite.planner import Budget, PlanStatus, Recorder
 from suite.referee import Referee
-from tests.baselines.ompl.laboratory import L_SHAPED, SCENES, run, scene_of
+from tests.baselines.ompl.laboratory import L_SHAPED, run, scene_of
 
 WATCHED = (
     RRTstarPlanner,
@@ -59,19 +56,3 @@ def test_a_path_that_does_not_begin_at_the_start_is_no_path(monkeypatch):
     monkeypatch.setattr(Problem, "straight_line", property(lambda _: np.array([[0, 0], [1, 1]])))
     made = run(RRTstarPlanner(), scene, Budget(checks=1000))
     assert (made.status, made.path) == (PlanStatus.EXHAUSTED, None)
-
-
-@each
-def test_nothing_of_a_run_stays_in_memory(planner, monkeypatch):
-    alive = []
-    set_up = Problem.set_up
-
-    def remember(problem):
-        alive.append(weakref.ref(problem))
-        set_up(problem)
-
-    monkeypatch.setattr(Problem, "set_up", remember)
-    run(planner, SCENES["one box"], Budget(checks=500))
-    gc.collect()
-    assert [reference() for reference in alive] == [None] * len(alive)
-    assert alive

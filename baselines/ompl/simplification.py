@@ -1,0 +1,51 @@
+"""OMPL's simplifier (Geraerts and Overmars 2007, and more) on a budget, with the exact check.
+
+It cuts corners wherever the shortcut is free, and drops and merges vertices.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from ompl import base as ob
+from ompl import geometric as og
+
+from baselines.ompl.adapter import Problem
+from baselines.ompl.collision import do_nothing
+
+CHECKS_BETWEEN_LOOKS = 64
+"""Checks after which a step of the simplifier looks at the clock: about 0.05 ms."""
+
+
+class BudgetSpentError(Exception):
+    """Ends the simplifier in the middle of a step."""
+
+
+def simplify(problem: Problem) -> NDArray[np.float64]:
+    """Simplify the problem's solution until nothing changes or the budget is spent.
+
+    The path is free after each check. Merely refused when the budget is spent, OMPL would take the
+    path for a colliding one and move its waypoints at random to mend it: an exception ends it.
+
+    Returns
+    -------
+    (n, 2) float64, metres: the path so far.
+    """
+    collision = problem.collision
+
+    def look() -> None:
+        if problem.is_over():
+            raise BudgetSpentError
+        collision.stop_at = min(collision.checks + CHECKS_BETWEEN_LOOKS, collision.limit)
+
+    solution = problem.definition.getSolutionPath()
+    is_over = ob.PlannerTerminationCondition(problem.is_over)
+    collision.stop = look
+    collision.stop_at = collision.checks
+    try:
+        og.PathSimplifier(problem.information).simplify(solution, is_over, False)
+    except BudgetSpentError:
+        pass
+    finally:
+        collision.stop = do_nothing  # which knew the problem, which knows the collision
+    path = problem.path()
+    assert path is not None
+    return path
