@@ -7,7 +7,7 @@ STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
 
-.PHONY: setup bench test test-slow lint perf clean
+.PHONY: setup bench test test-slow torture lint perf clean
 
 setup: $(STAMP)
 
@@ -24,11 +24,15 @@ bench: setup
 
 # The kernels' claims hold compiled and interpreted: the second line runs them without the JIT.
 test: setup
-	$(BIN)/python -m pytest -q -m "not slow" -n 2 --dist worksteal
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -m "not slow" -n 2 tests/suite/geometry tests/kbga
+	$(BIN)/python -m pytest -q -m "not slow and not torture" -n 2 --dist worksteal
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -m "not slow and not torture" -n 2 tests/suite/geometry tests/kbga
 
 test-slow: setup
 	$(BIN)/python -m pytest -q -m slow -n 2 --dist worksteal
+
+# The harness is killed at 100 random moments of a matrix, and resumed.
+torture: setup
+	$(BIN)/python -m pytest -q -m torture -n 2 --dist worksteal
 
 lint: setup
 	$(BIN)/ruff check .

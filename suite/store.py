@@ -6,7 +6,7 @@ and nothing else. pandas reads it; see :func:`read_runs`.
 
 import json
 import sqlite3
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import fields
 from pathlib import Path
@@ -15,6 +15,7 @@ from typing import Any, Self
 
 import numpy as np
 import pandas as pd
+from filelock import BaseFileLock, FileLock, Timeout
 from numpy.typing import NDArray
 
 from suite.errors import StoreError
@@ -56,7 +57,18 @@ CREATE TABLE events (
 CREATE TABLE traces (key TEXT PRIMARY KEY REFERENCES runs (key), trace TEXT NOT NULL);
 CREATE TABLE paths (key TEXT PRIMARY KEY REFERENCES runs (key), xy BLOB NOT NULL);
 CREATE TABLE simulations (key TEXT PRIMARY KEY REFERENCES runs (key), data TEXT NOT NULL);
+CREATE TABLE wanted (
+    matrix TEXT NOT NULL, key TEXT NOT NULL, scene TEXT NOT NULL, variant TEXT NOT NULL,
+    PRIMARY KEY (matrix, key)
+) WITHOUT ROWID;
+CREATE TABLE conflicts (
+    key TEXT NOT NULL, source TEXT NOT NULL, row TEXT NOT NULL, xy BLOB,
+    PRIMARY KEY (key, source)
+) WITHOUT ROWID;
 """
+
+BELONGINGS = ("events", "traces", "paths", "simulations")
+"""Tables that hold more of a run, by its key."""
 
 _CELL_COLUMNS = tuple(f.name for f in fields(Cell) if f.name not in ("settings", "budget", "world"))
 _OUTCOME_COLUMNS = tuple(
@@ -72,9 +84,10 @@ class Store:
     path : Path of the file.
     """
 
-    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
+    def __init__(self, path: Path, connection: sqlite3.Connection, lock: BaseFileLock) -> None:
         self.path = path
         self._connection = connection
+        self._lock = lock
         self._session: int | None = None
 
     def __enter__(self) -> Self:
@@ -89,8 +102,9 @@ class Store:
         self.close()
 
     def close(self) -> None:
-        """Close the file. Everything that was added is in it already."""
+        """Close the file and let others write. Everything that was added is in it already."""
         self._connection.close()
+        self._lock.release()
 
     def begin_session(self, provenance: Mapping[str, Any]) -> None:
         """Say what machine and which versions the rows that follow come from."""
@@ -105,8 +119,26 @@ class Store:
         with _explained(self.path):
             return {key for (key,) in self._connection.execute("SELECT key FROM runs")}
 
-    def add(self, record: RunRecord) -> None:
+    def statuses(self) -> dict[str, str]:
+        """How the rows that are there ended, by their keys."""
+        with _explained(self.path):
+            return dict(self._connection.execute("SELECT key, status FROM runs"))
+
+    def want(self, matrix: str, cells: Iterable[Cell]) -> None:
+        """Write down what a matrix wants, in place of what it wanted before: for those who ask."""
+        rows = [(matrix, cell.key, cell.scene, cell.variant) for cell in cells]
+        with self._writing() as connection:
+            connection.execute("DELETE FROM wanted WHERE matrix = ?", (matrix,))
+            connection.executemany("INSERT INTO wanted VALUES (?, ?, ?, ?)", rows)
+
+    def add(self, record: RunRecord, *, replace: bool = False) -> None:
         """Write one row and all that belongs to it, whole or not at all.
+
+        Parameters
+        ----------
+        record : RunRecord
+        replace : bool
+            In place of the row of the same key, if there is one.
 
         Raises
         ------
@@ -119,6 +151,9 @@ class Store:
         row["session"] = self._session
         key = row["key"]
         with self._writing() as connection:
+            if replace:
+                for table in (*BELONGINGS, "runs"):
+                    connection.execute(f"DELETE FROM {table} WHERE key = ?", (key,))
             connection.execute(_insert("runs", row), row)
             connection.executemany(
                 "INSERT INTO events VALUES (?, ?, ?, ?, ?, ?, ?)",
@@ -137,6 +172,18 @@ class Store:
             if record.simulation is not None:
                 data = json.dumps(record.simulation)
                 connection.execute("INSERT INTO simulations VALUES (?, ?)", (key, data))
+
+    @contextmanager
+    def attached(self, other: Path) -> Iterator[sqlite3.Connection]:
+        """One transaction on this store (``main``) beside another one (``other``, read only)."""
+        with _explained(other):
+            uri = f"{other.absolute().as_uri()}?mode=ro"
+            self._connection.execute("ATTACH ? AS other", (uri,))
+        try:
+            with self._writing() as connection:
+                yield connection
+        finally:
+            self._connection.execute("DETACH other")
 
     @contextmanager
     def _writing(self) -> Iterator[sqlite3.Connection]:
@@ -162,13 +209,22 @@ def open_store(path: Path, *, create: bool = True) -> Store:
     ------
     StoreError
         If the file is missing (and ``create`` is false), is no store, comes from another version,
-        or can't be written.
+        can't be written, or another process has it open for writing.
     """
     is_new = not path.exists()
     if is_new and not create:
         raise _missing(path)
     if is_new:
         _make_folder(path)
+    lock = _locked(path)
+    try:
+        return Store(path, _open_for_writing(path), lock)
+    except BaseException:
+        lock.release()
+        raise
+
+
+def _open_for_writing(path: Path) -> sqlite3.Connection:
     connection = _connect(path, writable=True)
     try:
         with _explained(path):
@@ -181,7 +237,65 @@ def open_store(path: Path, *, create: bool = True) -> Store:
     except BaseException:
         connection.close()
         raise
-    return Store(path, connection)
+    return connection
+
+
+def _locked(path: Path) -> BaseFileLock:
+    """The right to write, held until it is released or the process ends, however it ends.
+
+    The lock is on a file beside the store: SQLite's own locks last for a transaction only.
+    """
+    file = Path(f"{path}.lock")
+    lock = FileLock(file, timeout=0)
+    try:
+        # The library waits for a folder that can't be written as for a lock that is held.
+        file.touch()
+        lock.acquire()
+    except Timeout as error:
+        raise StoreError(f"{path}: {_holder(path)}. Wait for it, or name another store.") from error
+    except OSError as error:
+        raise StoreError(
+            f"{path}: can't be opened or written ({error.strerror}). Check its folder and "
+            "permissions."
+        ) from error
+    return lock
+
+
+def _holder(path: Path) -> str:
+    """Who writes to a store: whoever began the last session."""
+    try:
+        last = read_sessions(path)[-1]
+    except (StoreError, IndexError):
+        last = {}
+    matrix, start = last.get("matrix", "a matrix"), last.get("started_at", "a moment ago")
+    where = f"process {last.get('pid', '?')} on {last.get('host', 'this machine')}"
+    return f"another process is writing to it ({where}, {matrix}, since {start})"
+
+
+def is_being_written(path: Path) -> bool:
+    """Whether a process has a store open for writing."""
+    try:
+        with FileLock(f"{path}.lock", timeout=0):
+            return False
+    except Timeout:
+        return True
+    except OSError:
+        # No right to write there: nobody to ask, and nothing that the caller could disturb.
+        return False
+
+
+def read_wanted(path: Path) -> pd.DataFrame:
+    """What the matrices of a store want: matrix, key, scene, variant, and the status or nothing."""
+    return _read(
+        path,
+        "SELECT matrix, wanted.key, wanted.scene, wanted.variant, status FROM wanted "
+        "LEFT JOIN runs ON runs.key = wanted.key ORDER BY matrix, wanted.key",
+    )
+
+
+def read_conflicts(path: Path) -> pd.DataFrame:
+    """Rows of other stores that say something else than the ones here: key, source, row (JSON)."""
+    return _read(path, "SELECT key, source, row FROM conflicts ORDER BY key, source")
 
 
 def read_runs(path: Path) -> pd.DataFrame:
@@ -350,7 +464,8 @@ def _make_folder(path: Path) -> None:
 def _connect(path: Path, *, writable: bool) -> sqlite3.Connection:
     with _explained(path):
         if writable:
-            return sqlite3.connect(path, timeout=BUSY_S)
+            # As a URI too, so that other stores can be attached for reading only.
+            return sqlite3.connect(f"{path.absolute().as_uri()}", uri=True, timeout=BUSY_S)
         return sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=BUSY_S)
 
 
@@ -420,4 +535,6 @@ def _in_words(error: sqlite3.DatabaseError) -> str:
         return f"can't be opened or written ({error}). Check its folder and permissions."
     if name.startswith("SQLITE_FULL"):
         return "the disk is full. Make room and run the same command again."
+    if name.startswith("SQLITE_IOERR"):
+        return f"can't be read or written ({error}). Look after its disk: full, over quota, gone?"
     return f"SQLite says: {error}."

@@ -15,7 +15,7 @@ FLOORS = (
     {"dynamics", "scene", "scene_file", "exact"},
     {"planner", "plugins"},
     {"scenes", "record", "referee"},
-    {"conformance", "store"},
+    {"conformance", "merge", "store"},
     {"harness", "dynamic", "report", "paper", "listing"},
     {"cli"},
 )

@@ -55,13 +55,7 @@ def run_cell(
     RunRecord
         Always: what a planner raises or returns by mistake is a row.
     """
-    blank = RunRecord(
-        cell,
-        PlanStatus.ERROR,
-        host=host_name(),
-        load=load_average(),
-        started_at=datetime.now(UTC).isoformat(timespec="seconds"),
-    )
+    blank = _blank(cell)
     try:
         return _run(cell, blank, recorder or Recorder(), before_plan)
     except MemoryError:
@@ -69,6 +63,22 @@ def run_cell(
     except (Exception, SystemExit):
         # Other people's code: whatever it raises is an outcome of its run, and no reason to stop.
         return replace(blank, reason=_last_lines())
+
+
+def attempt_cell(cell: Cell) -> RunRecord:
+    """Run one cell as :func:`run_cell` does, but let pass whatever is raised: for a debugger."""
+    return _run(cell, _blank(cell), Recorder(), lambda: None)
+
+
+def _blank(cell: Cell) -> RunRecord:
+    """The record of a run that has not begun."""
+    return RunRecord(
+        cell,
+        PlanStatus.ERROR,
+        host=host_name(),
+        load=load_average(),
+        started_at=datetime.now(UTC).isoformat(timespec="seconds"),
+    )
 
 
 def _run(

@@ -1,4 +1,4 @@
-"""The progress of a matrix: a bar on a terminal, plain lines anywhere else."""
+"""The progress of a matrix: bars on a terminal, plain lines anywhere else."""
 
 import time
 from types import TracebackType
@@ -8,16 +8,23 @@ from rich.console import Console
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
+    TaskID,
     TextColumn,
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
-from rich.progress import Progress as Bar
+from rich.progress import Progress as Bars
 
-from suite.harness.run import FAILURES, Progress
+from suite.harness.forecast import duration
+from suite.harness.run import FAILURES, Progress, Tally
 
 LINE_EVERY_S = 10.0
 """Plain lines go to logs: often enough to see life, seldom enough to read."""
+
+MOST_PLANNERS = 30
+"""A terminal has so many lines, about."""
+
+INDENT = "  "
 
 
 class Display:
@@ -29,24 +36,27 @@ class Display:
     def __init__(self, title: str, console: Console | None = None) -> None:
         self._title = title
         self._console = console or Console(stderr=True)
-        self._bar: Bar | None = None
-        self._last_line = -LINE_EVERY_S
+        self._bars: Bars | None = None
+        self._tasks: dict[str, TaskID] = {}
+        self._begin = self._last_line = time.monotonic()
+        self._is_first = True
         self._shown_failures: set[tuple[str, str]] = set()
 
     def __enter__(self) -> Self:
         if self._console.is_terminal:
-            self._bar = Bar(
+            self._bars = Bars(
                 TextColumn("{task.description}"),
                 BarColumn(bar_width=None),
                 MofNCompleteColumn(),
+                TextColumn("[green]{task.fields[good]}[/green]"),
                 TextColumn("[red]{task.fields[failed]}[/red]"),
+                TextColumn("{task.fields[rate]}"),
                 TimeElapsedColumn(),
                 TimeRemainingColumn(),
                 TextColumn("[dim]{task.fields[running]}[/dim]"),
                 console=self._console,
             )
-            self._bar.start()
-            self._task = self._bar.add_task(self._title, total=None, failed="", running="")
+            self._bars.start()
         return self
 
     def __exit__(
@@ -55,22 +65,17 @@ class Display:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        if self._bar is not None:
-            self._bar.stop()
+        if self._bars is not None:
+            self._bars.stop()
 
     def __call__(self, progress: Progress) -> None:
         """Show it."""
         self._show_failure(progress)
-        if self._bar is not None:
-            self._bar.update(
-                self._task,
-                total=progress.wanted,
-                completed=progress.done,
-                failed=f"{progress.failed} failed" if progress.failed else "",
-                running=", ".join(progress.running),
-            )
+        if self._bars is not None:
+            self._show_bars(self._bars, progress)
         else:
             self._show_line(progress)
+        self._is_first = False
 
     def _show_failure(self, progress: Progress) -> None:
         """Name the first failure of each kind; the count, and the store, have them all."""
@@ -85,14 +90,50 @@ class Display:
         text = f"{record.cell.label}: {what}"
         self._console.print(text, style="red", markup=False, highlight=False, soft_wrap=True)
 
+    def _show_bars(self, bars: Bars, progress: Progress) -> None:
+        whole = Tally(progress.wanted, progress.done, failed=progress.failed)
+        self._show_bar(bars, self._title, whole, self._rate(progress), ", ".join(progress.running))
+        if len(progress.planners) <= MOST_PLANNERS:
+            for name, tally in progress.planners.items():
+                self._show_bar(bars, INDENT + name, tally)
+
+    def _show_bar(
+        self, bars: Bars, name: str, tally: Tally, rate: str = "", running: str = ""
+    ) -> None:
+        if name not in self._tasks:
+            self._tasks[name] = bars.add_task(
+                name, total=None, good="", failed="", rate="", running=""
+            )
+        bars.update(
+            self._tasks[name],
+            total=tally.wanted,
+            completed=tally.done,
+            good=f"{tally.succeeded} good" if tally.succeeded else "",
+            failed=f"{tally.failed} failed" if tally.failed else "",
+            rate=rate,
+            running=running,
+        )
+
     def _show_line(self, progress: Progress) -> None:
         now = time.monotonic()
         is_end = progress.done == progress.wanted and not progress.running
-        if now - self._last_line < LINE_EVERY_S and not is_end:
+        if now - self._last_line < LINE_EVERY_S and not is_end and not self._is_first:
             return
         self._last_line = now
         left = progress.wanted - progress.done
-        text = f"{self._title}: {progress.done} of {progress.wanted} done, {left} left"
-        text += f", {progress.failed} failed" if progress.failed else ""
+        parts = [f"{progress.done} of {progress.wanted} done", f"{left} left"]
+        parts += [self._rate(progress)] if self._rate(progress) else []
+        if progress.failed:
+            names = ", ".join(f"{k} {v.failed}" for k, v in progress.planners.items() if v.failed)
+            parts.append(f"{progress.failed} failed{f' ({names})' if names else ''}")
+        text = f"{self._title}: {', '.join(parts)}"
         text += f"; running {', '.join(progress.running)}" if progress.running else ""
         self._console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+    def _rate(self, progress: Progress) -> str:
+        """Runs per second of this session, and the time left at that rate."""
+        ran, seconds = progress.done - progress.found, time.monotonic() - self._begin
+        left = progress.wanted - progress.done
+        if ran == 0 or seconds == 0.0 or left == 0:
+            return ""
+        return f"{ran / seconds:.2g} runs/s, about {duration(left * seconds / ran)} left"

@@ -5,10 +5,11 @@ processes. Rows come back to the caller's thread, which is the store's one write
 """
 
 import os
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 import numpy as np
 
@@ -36,6 +37,41 @@ FAILURES = frozenset(
 )
 """Ends that ask for somebody to look; an exhausted budget or a refusal does not."""
 
+SUCCESSES = frozenset({PlanStatus.SOLVED, PlanStatus.INFEASIBLE})
+"""A path that the referee accepts, or the right answer that there is none."""
+
+
+class Which(StrEnum):
+    """Which runs of a matrix are to be run."""
+
+    MISSING = "missing"
+    """Those that the store lacks."""
+    FAILED = "failed"
+    """Those too that ended in one of FAILURES; their rows are replaced."""
+    ALL = "all"
+    """All; rows that are there are replaced, each when its new run has ended."""
+
+
+@dataclass(slots=True)
+class Tally:
+    """How the runs of one planner variant stand.
+
+    wanted, done : runs.
+    succeeded : of these solved, or proved to be infeasible.
+    failed : of these ended in one of FAILURES.
+    """
+
+    wanted: int = 0
+    done: int = 0
+    succeeded: int = 0
+    failed: int = 0
+
+    def count(self, status: str) -> None:
+        """Count one row."""
+        self.done += 1
+        self.succeeded += status in SUCCESSES
+        self.failed += status in FAILURES
+
 
 @dataclass(slots=True)
 class Progress:
@@ -47,6 +83,7 @@ class Progress:
     failed : runs of this session that ended in one of FAILURES.
     running : labels of the runs that were handed out and are not back.
     last : the row that came last.
+    planners : by the name of each variant, all its runs.
     """
 
     wanted: int
@@ -55,6 +92,7 @@ class Progress:
     failed: int = 0
     running: list[str] = field(default_factory=list)
     last: RunRecord | None = None
+    planners: dict[str, Tally] = field(default_factory=dict)
 
     def summary(self) -> str:
         """One line that says how the matrix ended."""
@@ -69,6 +107,7 @@ def run_matrix(
     *,
     jobs: int | None = None,
     quick: bool = False,
+    which: Which = Which.MISSING,
     executor: Executor | None = None,
     on_progress: Callable[[Progress], None] = lambda _: None,
 ) -> Progress:
@@ -83,6 +122,8 @@ def run_matrix(
         Runs at a time; default: the number of processors.
     quick : bool
         Only the first two seeds.
+    which : Which
+        Which rows that are there are run again.
     executor : Executor, optional
         Where the runs are waited for; default: threads of this process.
     on_progress : callable
@@ -100,25 +141,56 @@ def run_matrix(
     """
     jobs = jobs or os.cpu_count() or 1
     cells = matrix.cells(quick=quick)
-    there = store.keys()
-    missing = interleaved([cell for cell in cells if cell.key not in there])
-    found = len(cells) - len(missing)
-    progress = Progress(wanted=len(cells), done=found, found=found)
+    there = store.statuses()
+    missing = to_run(cells, there, which)
+    progress = _progress(cells, missing, there)
     on_progress(progress)
+    store.want(matrix.name, cells)
     if not missing:
         return progress
     warmth = warmth_for(missing, matrix.limits)
     if executor is None:
         start_server(warmth)
     distributions = {(cell.distribution, cell.version) for cell in missing}
-    store.begin_session(provenance(matrix.name, distributions))
+    store.begin_session(provenance(matrix.name, distributions) | {"pid": os.getpid()})
     with _executor(executor, jobs) as own:
         runs = _run_each(missing, matrix.limits, warmth, own, jobs, progress)
         with closing(runs):
             for record in runs:
                 if record is not None:
-                    _count(store, record, progress)
+                    store.add(record, replace=record.cell.key in there)
+                    _count(record, progress)
                 on_progress(progress)
+    return progress
+
+
+def to_run(cells: Sequence[Cell], there: Mapping[str, str], which: Which) -> list[Cell]:
+    """The cells that are to be run, in the order in which they are started.
+
+    Parameters
+    ----------
+    cells : sequence of Cell
+    there : mapping from the keys of the rows that a store has to how they ended
+    which : Which
+    """
+    again = {
+        Which.MISSING: set[str](),
+        Which.FAILED: {key for key, status in there.items() if status in FAILURES},
+        Which.ALL: set(there),
+    }[which]
+    return interleaved([cell for cell in cells if cell.key not in there or cell.key in again])
+
+
+def _progress(cells: Sequence[Cell], missing: Sequence[Cell], there: Mapping[str, str]) -> Progress:
+    """How a matrix stands before its first run."""
+    found = len(cells) - len(missing)
+    progress = Progress(wanted=len(cells), done=found, found=found)
+    again = {cell.key for cell in missing}
+    for cell in cells:
+        tally = progress.planners.setdefault(cell.variant, Tally())
+        tally.wanted += 1
+        if cell.key not in again:
+            tally.count(there[cell.key])
     return progress
 
 
@@ -147,11 +219,11 @@ def _executor(given: Executor | None, jobs: int) -> Iterator[Executor]:
         yield own
 
 
-def _count(store: Store, record: RunRecord, progress: Progress) -> None:
-    store.add(record)
+def _count(record: RunRecord, progress: Progress) -> None:
     progress.done += 1
     progress.failed += record.status in FAILURES
     progress.last = record
+    progress.planners[record.cell.variant].count(record.status)
 
 
 def _run_each(

@@ -77,3 +77,17 @@ def closed_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     write_scene(scene, file)
     return file
+
+
+@pytest.fixture
+def matrix_file(hostile, wall_file, tmp_path):
+    """Write a matrix of these planners in a scene with a wall."""
+
+    def make(*planners, seeds=2):
+        file = tmp_path / "matrix.toml"
+        text = f'scenes = ["{wall_file}"]\nseeds = {seeds}\n[limits]\nwall_s = 1.0\n'
+        text += "".join(f'[[planner]]\nplanner = "{planner}"\n' for planner in planners)
+        file.write_text(text)
+        return file
+
+    return make

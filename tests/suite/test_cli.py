@@ -2,17 +2,12 @@
 
 import json
 import os
-import signal
 import sqlite3
-import subprocess
 import sys
-import time
-import uuid
 import warnings
-from dataclasses import dataclass
+from contextlib import closing
 
 import PIL.Image
-import psutil
 import pytest
 import shapely
 
@@ -21,16 +16,8 @@ from suite.dynamics import Dynamics, constant_speed
 from suite.scene import Obstacle, make_scene
 from suite.scene_file import read_scene, write_scene
 from suite.scenes.catalogue import load_scene
-from suite.store import read_paths, read_runs
-
-COMMAND = [sys.executable, "-c", "from suite.cli import main; main()"]
-
-
-@dataclass(frozen=True)
-class Done:
-    code: int
-    out: str
-    err: str
+from suite.store import read_runs
+from tests.suite.commands import Done, in_own_process
 
 
 @pytest.fixture
@@ -56,26 +43,6 @@ def error_of(kbga_bench):
         return done.err
 
     return run
-
-
-def in_own_process(*arguments, code=0, env=None):
-    done = subprocess.run(
-        [*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=120, env=env
-    )
-    assert done.returncode == code, done.stderr
-    return Done(done.returncode, done.stdout, done.stderr)
-
-
-@pytest.fixture
-def matrix(hostile, wall_file, tmp_path):
-    def make(*planners, seeds=2):
-        file = tmp_path / "matrix.toml"
-        text = f'scenes = ["{wall_file}"]\nseeds = {seeds}\n[limits]\nwall_s = 1.0\n'
-        text += "".join(f'[[planner]]\nplanner = "{planner}"\n' for planner in planners)
-        file.write_text(text)
-        return file
-
-    return make
 
 
 @pytest.fixture(scope="module")
@@ -324,12 +291,12 @@ def test_a_bad_matrix_makes_no_store(error_of, tmp_path):
     assert not (tmp_path / "s.db").exists()
 
 
-def test_run_keeps_rows_and_says_how_it_ended(kbga_bench, matrix, tmp_path):
+def test_run_keeps_rows_and_says_how_it_ended(kbga_bench, matrix_file, tmp_path):
     store = tmp_path / "s.db"
-    done = kbga_bench("run", matrix("wanderer", "raises"), "--store", store, "--jobs", 2)
+    done = kbga_bench("run", matrix_file("wanderer", "raises"), "--store", store, "--jobs", 2)
     assert "4 of 4 runs are in the store: 0 were there, 4 ran now, 2 of these failed." in (done.out)
     assert "error: RuntimeError: no luck today" in done.err
-    again = kbga_bench("run", matrix("wanderer", "raises"), "--store", store)
+    again = kbga_bench("run", matrix_file("wanderer", "raises"), "--store", store)
     assert "4 were there, 0 ran now" in again.out
     assert len(read_runs(store)) == 4
 
@@ -409,78 +376,54 @@ def test_export_writes_a_file_for_each_kind_of_row(kbga_bench, filled, tmp_path)
     }
 
 
-def started(matrix, store, mark):
-    """The command running a matrix, in a process group of its own, once it has written 3 rows."""
-    run = subprocess.Popen(
-        [*COMMAND, "run", str(matrix), "--store", str(store), "--jobs", "2"],
-        env={**os.environ, "KBGA_TEST_MARK": mark},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    )
-    deadline = time.monotonic() + 60
-    while rows_of(store) < 3 and time.monotonic() < deadline:
-        time.sleep(0.02)
-    return run
+# Growing, merging, looking at and repeating what is in a store
 
 
-def rows_of(store):
-    try:
-        return len(read_runs(store))
-    except Exception:
-        return 0
+def test_a_dry_run_says_what_would_run_and_runs_nothing(kbga_bench, matrix_file, tmp_path):
+    said = kbga_bench("run", matrix_file("wanderer"), "--store", tmp_path / "s.db", "--dry-run").out
+    assert "2 of 2 runs would be run" in said
+    assert not (tmp_path / "s.db").exists()
 
 
-def marked(mark):
-    """Processes that descend from a command, wherever they hang now."""
-    found = []
-    for process in psutil.process_iter():
-        try:
-            if process.environ().get("KBGA_TEST_MARK") == mark:
-                found.append(process)
-        except psutil.Error:
-            continue
-    return found
+def test_rows_are_forced_to_be_run_again_or_only_those_that_failed(
+    kbga_bench, matrix_file, tmp_path
+):
+    run = ("run", matrix_file("wanderer", "raises"), "--store", tmp_path / "s.db")
+    kbga_bench(*run)
+    assert "2 were there, 2 ran now, 2 of these failed" in kbga_bench(*run, "--only-failed").out
+    assert "0 were there, 4 ran now" in kbga_bench(*run, "--force").out
+    kbga_bench(*run, "--force", "--only-failed", code=2)
 
 
-def gone(mark, patience_s=5.0):
-    deadline = time.monotonic() + patience_s
-    while marked(mark) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    return not marked(mark)
+def test_stores_are_merged_and_conflicts_are_named(kbga_bench, matrix_file, tmp_path):
+    one, two = tmp_path / "one.db", tmp_path / "two.db"
+    kbga_bench("run", matrix_file("wanderer"), "--store", one)
+    kbga_bench("run", matrix_file("raises"), "--store", two)
+    said = kbga_bench("run", matrix_file("raises"), "--store", one, "--merge", two).out
+    assert "two.db: 2 rows added, 0 were there, 0 in conflict." in said
+    assert "2 were there, 0 ran now" in said
+    with closing(sqlite3.connect(two)) as connection, connection:
+        connection.execute("UPDATE runs SET status = 'solved' WHERE seed = 0")
+    said = kbga_bench("merge", one, two, code=1).out
+    assert "0 rows added, 1 were there, 1 in conflict." in said
+    assert "has another outcome there; both are kept." in said
 
 
-@pytest.mark.parametrize("sleeper", ["sleeper", "hangs-in-c"])
-def test_kill_9_loses_no_finished_row_doubles_none_and_leaves_no_orphan(matrix, tmp_path, sleeper):
-    store, mark = tmp_path / "s.db", uuid.uuid4().hex
-    wanted = matrix("wanderer", sleeper, seeds=4)
-    run = started(wanted, store, mark)
-    assert marked(mark)
-    run.kill()
-    run.wait()
-    assert gone(mark)
-    before = read_runs(store).set_index("key")
-    paths = read_paths(store)
-    assert 3 <= len(before) < 8
-    in_own_process("run", wanted, "--store", store, "--jobs", 4)
-    after = read_runs(store).set_index("key")
-    assert len(after) == 8
-    assert after.index.is_unique
-    assert after.loc[before.index, "wall_s"].equals(before["wall_s"])
-    assert all(read_paths(store)[key].tolist() == path.tolist() for key, path in paths.items())
-    with sqlite3.connect(store) as connection:
-        assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+def test_status_is_told_in_words_and_as_json(kbga_bench, filled):
+    found = json.loads(kbga_bench("status", filled, "--format", "json").out)
+    assert {name: found[name] for name in ("wanted", "done", "missing")} == {
+        "wanted": 4, "done": 4, "missing": 0,
+    }  # fmt: skip
+    assert found["by_status"] == {"exhausted": 2, "solved": 2}
+    assert "4 of 4 runs done (100 %)" in kbga_bench("status", filled).out
 
 
-def test_ctrl_c_stops_tidily_and_says_how_to_go_on(matrix, tmp_path):
-    store, mark = tmp_path / "s.db", uuid.uuid4().hex
-    run = started(matrix("wanderer", "hangs", seeds=4), store, mark)
-    os.killpg(run.pid, signal.SIGINT)
-    _, stderr = run.communicate(timeout=10)
-    assert run.returncode == 130
-    assert "to go on, give the same command again" in stderr
-    assert "Traceback" not in stderr
-    assert gone(mark)
-    assert 3 <= len(read_runs(store)) < 8
-    assert set(read_runs(store)["status"]) <= {"solved", "timed_out"}
+def test_a_row_is_repeated_from_its_own_record(kbga_bench, filled, hostile):
+    key = read_runs(filled)["key"].iloc[0]
+    found = json.loads(kbga_bench("rerun", filled, key[:8], "--format", "json").out)
+    assert (found["key"], found["same"], found["distance"]) == (key, True, 0.0)
+    assert "the path is the same bit for bit" in kbga_bench("rerun", filled, key).out
+
+
+def test_a_row_that_is_not_there_cannot_be_repeated(error_of, filled):
+    assert "no row begins with 'ffffffff00'" in error_of("rerun", filled, "ffffffff00")

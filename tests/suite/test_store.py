@@ -1,4 +1,9 @@
+import os
 import sqlite3
+import subprocess
+import sys
+from contextlib import closing
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -212,3 +217,78 @@ def test_a_store_that_another_process_writes_to_says_so(file, monkeypatch):
     with open_store(file) as store, pytest.raises(StoreError, match="another process"):
         store.begin_session({})
     other.close()
+
+
+WRITER = """
+import sys, time
+from pathlib import Path
+from suite.store import open_store
+with open_store(Path(sys.argv[1])) as store:
+    store.begin_session({"matrix": "walls", "pid": 4711, "host": "here", "started_at": "noon"})
+    print("open", flush=True)
+    time.sleep(60)
+"""
+
+
+def test_the_second_writer_is_told_who_is_the_first_until_that_one_is_gone(file):
+    first = subprocess.Popen([sys.executable, "-c", WRITER, str(file)], stdout=subprocess.PIPE)
+    try:
+        assert first.stdout.readline() == b"open\n"
+        with pytest.raises(StoreError) as caught:
+            open_store(file)
+        assert "process 4711 on here, walls, since noon" in str(caught.value)
+        assert "Wait for it, or name another store." in str(caught.value)
+        # Reading goes on.
+        assert read_runs(file).empty
+    finally:
+        first.kill()
+        first.wait()
+    with open_store(file):
+        pass
+
+
+FILLER = """
+import resource, sys
+from pathlib import Path
+from suite.errors import StoreError
+from suite.store import open_store
+from tests.suite.harness.records import make_cell, make_record
+with open_store(Path(sys.argv[1])) as store:
+    store.begin_session({})
+    resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
+    try:
+        for seed in range(10_000):
+            store.add(make_record(make_cell(seed=seed)))
+    except StoreError as error:
+        print(seed, error)
+"""
+
+
+def test_a_disk_that_can_take_no_more_is_an_error_and_nothing_is_corrupted(file):
+    told = subprocess.run(
+        [sys.executable, "-c", FILLER, str(file)], capture_output=True, text=True, check=True
+    ).stdout
+    number, _, words = told.partition(" ")
+    assert str(file) in words
+    assert "full" in words
+    with closing(sqlite3.connect(file)) as connection:
+        assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+    assert len(read_runs(file)) == int(number) > 10
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_a_folder_that_cannot_be_written_is_an_error_that_says_so(file):
+    filled(file, make_record())
+    file.parent.chmod(0o500)
+    try:
+        with pytest.raises(StoreError, match="can't be opened or written"):
+            open_store(file)
+        assert len(read_runs(file)) == 1
+    finally:
+        file.parent.chmod(0o700)
+
+
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="there is no /proc")
+def test_a_file_system_that_takes_no_files_is_an_error_that_says_so():
+    with pytest.raises(StoreError, match=r"/proc/store\.db: can't be opened or written"):
+        open_store(Path("/proc/store.db"))

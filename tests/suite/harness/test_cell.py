@@ -113,4 +113,4 @@ def test_a_scene_that_changed_after_the_matrix_was_read_is_an_error(wall_file):
     )
     record = run_cell(changed)
     assert record.status is PlanStatus.ERROR
-    assert "changed after the matrix was read" in record.reason
+    assert "is not the scene any more that it was at first" in record.reason

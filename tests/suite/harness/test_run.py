@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from suite.harness.matrix import load_matrix
-from suite.harness.run import interleaved, run_matrix
+from suite.harness.run import Which, interleaved, run_matrix
+from suite.harness.status import status
 from suite.store import open_store, read_paths, read_runs, read_sessions
 from tests.suite.harness.records import make_cell
 
@@ -123,3 +124,41 @@ def test_a_session_says_where_its_rows_come_from(matrix, run):
     assert {"numpy", "numba", "shapely"} <= set(session["versions"])
     assert session["cores"] >= 1
     assert session["memory_bytes"] > 0
+
+
+def test_forced_runs_replace_their_rows(matrix, run):
+    run(matrix("visibility-graph"))
+    before = read_runs(run.file)
+    end = run(matrix("visibility-graph"), which=Which.ALL)
+    assert (end.found, end.done) == (0, 2)
+    after = read_runs(run.file)
+    assert after["key"].tolist() == before["key"].tolist()
+    assert set(after["session"]).isdisjoint(before["session"])
+    assert len(read_paths(run.file)) == 2
+
+
+def test_only_failed_runs_are_run_again(matrix, run):
+    run(matrix("visibility-graph", "raises", "gives-up"))
+    before = read_runs(run.file).set_index("variant")["session"]
+    end = run(matrix("visibility-graph", "raises", "gives-up"), which=Which.FAILED)
+    assert (end.found, end.done, end.failed) == (4, 6, 2)
+    after = read_runs(run.file).set_index("variant")["session"]
+    changed = sorted(set(after[(after != before).to_numpy()].index))
+    assert changed == ["raises"]
+
+
+def test_every_planner_has_its_own_count(matrix, run):
+    end = run(matrix("visibility-graph", "raises"))
+    tallies = {name: (t.wanted, t.done, t.succeeded, t.failed) for name, t in end.planners.items()}
+    assert tallies == {"visibility-graph": (2, 2, 2, 0), "raises": (2, 2, 0, 2)}
+
+
+def test_what_is_wanted_is_written_down_before_the_first_run(matrix, run):
+    def stop(progress):
+        if progress.running:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(matrix("visibility-graph"), on_progress=stop)
+    found = status(run.file)
+    assert (found["wanted"], found["missing"]) == (2, 2)

@@ -1,0 +1,153 @@
+"""What a command would run, and about how long, before it runs anything."""
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+
+import pandas as pd
+
+from suite.harness.matrix import Matrix
+from suite.harness.run import Which, to_run
+from suite.record import Cell
+from suite.store import read_runs
+
+OVERHEAD_S = 0.03
+"""Process, referee and store, for each run; about what `make harness` measures."""
+
+
+NOTHING = pd.DataFrame(columns=["key", "status", "scene", "variant", "wall_s"])
+"""The rows of a store that is not there yet."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """The runs of one planner variant that would be run.
+
+    runs : number.
+    known : of these, how many have a duration to go by.
+    seconds : of one process, for all the known ones.
+    """
+
+    variant: str
+    runs: int
+    known: int
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Forecast:
+    """What a command would run.
+
+    wanted, there : runs of the matrix, and those of them that need not be run.
+    parts : what would be run, variant by variant.
+    jobs : runs at a time.
+    """
+
+    wanted: int
+    there: int
+    parts: tuple[Part, ...]
+    jobs: int
+
+    @property
+    def runs(self) -> int:
+        """How many would be run."""
+        return sum(part.runs for part in self.parts)
+
+    @property
+    def seconds(self) -> float:
+        """About how long, as far as it is known."""
+        return sum(part.seconds for part in self.parts) / self.jobs
+
+    def as_text(self) -> str:
+        """A few lines for people."""
+        lines = [f"{self.runs} of {self.wanted} runs would be run; {self.there} need not be."]
+        for part in self.parts:
+            unknown = f", {part.runs - part.known} unknown" if part.known < part.runs else ""
+            about = (
+                f"about {duration(part.seconds / self.jobs)}{unknown}"
+                if part.known
+                else ("nobody knows how long")
+            )
+            lines.append(f"  {part.variant}: {part.runs} runs, {about}")
+        if self.runs:
+            lines.append(f"In all about {duration(self.seconds)} with {self.jobs} jobs.")
+        return "\n".join(lines)
+
+
+def forecast_matrix(
+    matrix: Matrix, store: Path, *, jobs: int | None, quick: bool, which: Which
+) -> Forecast:
+    """Say what :func:`suite.harness.run.run_matrix` would run.
+
+    Parameters
+    ----------
+    matrix : Matrix
+    store : Path
+        Need not exist.
+    jobs, quick, which : as there.
+
+    Raises
+    ------
+    StoreError
+        If the file is there and is no store.
+    """
+    cells = matrix.cells(quick=quick)
+    runs = read_runs(store) if store.exists() else NOTHING
+    there = dict(zip(runs["key"], runs["status"], strict=True))
+    return forecast(len(cells), to_run(cells, there, which), runs, jobs or os.cpu_count() or 1)
+
+
+def forecast(wanted: int, cells: Sequence[Cell], runs: pd.DataFrame, jobs: int) -> Forecast:
+    """Say what a command would run.
+
+    Parameters
+    ----------
+    wanted : int
+        Runs of the matrix.
+    cells : sequence of Cell
+        Those that would be run.
+    runs : DataFrame
+        Rows of the store, as :func:`suite.store.read_runs` gives them: the same variant on the same
+        scene will take as long as it did; before that, it is given its whole budget.
+    jobs : int
+        Runs at a time.
+    """
+    known = {
+        (str(scene), str(variant)): float(wall.median())
+        for (scene, variant), wall in runs.groupby(["scene", "variant"])["wall_s"]
+    }
+    by_variant: dict[str, list[Cell]] = {}
+    for cell in cells:
+        by_variant.setdefault(cell.variant, []).append(cell)
+    parts = tuple(_part(variant, group, known) for variant, group in by_variant.items())
+    return Forecast(wanted, wanted - len(cells), parts, jobs)
+
+
+def _part(variant: str, cells: Sequence[Cell], known: Mapping[tuple[str, str], float]) -> Part:
+    here = [seconds for (_, name), seconds in known.items() if name == variant]
+    guess = median(here) if here else None
+    seconds = [known.get((c.scene, variant), _budget(c) if guess is None else guess) for c in cells]
+    sure = [value + OVERHEAD_S for value in seconds if value is not None]
+    return Part(variant, len(cells), len(sure), sum(sure))
+
+
+def _budget(cell: Cell) -> float | None:
+    """What a run may take; nobody knows how often a simulated one plans."""
+    return cell.budget.wall_s if cell.world is None else None
+
+
+def duration(seconds: float) -> str:
+    """A duration in words, rounded.
+
+    Examples
+    --------
+    >>> [duration(s) for s in (0.4, 75, 4000, 200_000)]
+    ['1 s', '1 min 15 s', '1 h 7 min', '2 d 8 h']
+    """
+    whole = max(1, round(seconds))
+    for big, small, length, part in (("d", "h", 86400, 3600), ("h", "min", 3600, 60)):
+        if whole >= length:
+            return f"{whole // length} {big} {whole % length // part} {small}"
+    return f"{whole // 60} min {whole % 60} s" if whole >= 60 else f"{whole} s"

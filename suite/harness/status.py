@@ -1,0 +1,98 @@
+"""How a store stands, read from another shell while the harness goes on writing to it."""
+
+from pathlib import Path
+from typing import Any
+
+from suite.harness.run import FAILURES, SUCCESSES
+from suite.store import (
+    is_being_written,
+    read_conflicts,
+    read_runs,
+    read_sessions,
+    read_wanted,
+)
+
+
+def status(store: Path) -> dict[str, Any]:
+    """How a store stands, as plain data.
+
+    Returns
+    -------
+    dict
+        ``wanted``, ``done`` and ``missing`` count the runs of the matrices as they were run last;
+        ``other`` rows are of scenes and settings that no matrix wants any more. ``by_status`` and
+        ``planners`` count wanted runs. ``writer`` says who has it open for writing, or is null.
+
+    Raises
+    ------
+    StoreError
+        If it can't be read.
+    """
+    wanted = read_wanted(store).drop_duplicates("key")
+    runs = read_runs(store)
+    done = wanted["status"].notna()
+    sessions = read_sessions(store)
+    return {
+        "store": str(store),
+        "wanted": len(wanted),
+        "done": int(done.sum()),
+        "missing": int((~done).sum()),
+        "other": int((~runs["key"].isin(wanted["key"])).sum()),
+        "conflicts": len(read_conflicts(store)),
+        "by_status": _counts(wanted["status"]),
+        "planners": {
+            str(variant): {
+                "wanted": len(group),
+                "done": int(group["status"].notna().sum()),
+                "succeeded": int(group["status"].isin(SUCCESSES).sum()),
+                "failed": int(group["status"].isin(FAILURES).sum()),
+            }
+            for variant, group in wanted.groupby("variant", sort=False)
+        },
+        "last_row_at": runs["started_at"].max() if len(runs) else None,
+        "writer": _writer(sessions[-1] if sessions else {}) if is_being_written(store) else None,
+    }
+
+
+def as_text(found: dict[str, Any]) -> str:
+    """What :func:`status` gives, in a few lines for people."""
+    share = (
+        f"{100 * found['done'] // found['wanted']} %" if found["wanted"] else "no matrix was run"
+    )
+    lines = [
+        f"{found['store']}: {found['done']} of {found['wanted']} runs done ({share}), "
+        f"{found['missing']} missing"
+    ]
+    writer = found["writer"]
+    if writer is None:
+        lines.append("  nobody is writing to it")
+    else:
+        lines.append(
+            f"  process {writer['pid']} on {writer['host']} is running {writer['matrix']}, since "
+            f"{writer['since']}"
+        )
+    lines += [f"  {name}: {count}" for name, count in found["by_status"].items()]
+    for name, tally in found["planners"].items():
+        failed = f", {tally['failed']} failed" if tally["failed"] else ""
+        good = f"{tally['succeeded']} succeeded"
+        lines.append(f"  {name}: {tally['done']} of {tally['wanted']}, {good}{failed}")
+    if found["other"]:
+        lines.append(
+            f"  {found['other']} more rows, of scenes or settings that no matrix wants now"
+        )
+    if found["conflicts"]:
+        lines.append(f"  {found['conflicts']} rows of other stores in conflict with its own")
+    return "\n".join(lines)
+
+
+def _counts(values: Any) -> dict[str, int]:
+    return {str(k): int(v) for k, v in values.dropna().value_counts().sort_index().items()}
+
+
+def _writer(session: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "pid": session.get("pid"),
+        "host": session.get("host"),
+        "matrix": session.get("matrix"),
+        "since": session.get("started_at"),
+    }

@@ -1,0 +1,122 @@
+"""Stores that several machines filled, taken into one: nothing is lost, nothing is doubled."""
+
+import json
+
+import numpy as np
+import pytest
+
+from suite.errors import StoreError
+from suite.merge import merge
+from suite.record import World
+from suite.store import (
+    open_store,
+    read_conflicts,
+    read_events,
+    read_paths,
+    read_runs,
+    read_sessions,
+    read_simulation,
+)
+from tests.suite.harness.records import make_cell, make_record
+
+
+@pytest.fixture
+def store_of(tmp_path):
+    def fill(name, *records, machine=""):
+        with open_store(tmp_path / name) as store:
+            store.begin_session({"host": machine or name})
+            for record in records:
+                store.add(record)
+        return tmp_path / name
+
+    return fill
+
+
+def of(seed, **changes):
+    return make_record(make_cell(seed=seed), **changes)
+
+
+def test_rows_that_are_missing_are_added_with_all_that_belongs_to_them(store_of):
+    moving = make_record(make_cell(seed=9, world=World("w", {})), simulation={"outcome": "reached"})
+    mine, other = store_of("a", of(0), of(1)), store_of("b", of(1), of(2), moving)
+    with open_store(mine) as store:
+        (done,) = merge(store, [other])
+    assert (done.added, done.same, done.conflicts) == (2, 1, ())
+    runs = read_runs(mine)
+    assert sorted(runs["seed"]) == [0, 1, 2, 9]
+    assert len(read_events(mine)) == 2 * 4
+    assert np.array_equal(read_paths(mine)[of(2).cell.key], of(2).path)
+    assert read_simulation(mine, moving.cell.key) == {"outcome": "reached"}
+    hosts = {s["id"]: s["host"] for s in read_sessions(mine)}
+    assert [hosts[i] for i in runs.sort_values("seed")["session"]] == ["a", "a", "b", "b"]
+
+
+def test_a_row_with_another_outcome_is_kept_beside_and_named(store_of):
+    better = of(0, cost=150.0, path=np.zeros((2, 2)))
+    mine, other = store_of("a", of(0)), store_of("b", better)
+    for _ in range(2):
+        with open_store(mine) as store:
+            (done,) = merge(store, [other])
+        assert done.conflicts == (better.cell.key,)
+    assert read_runs(mine)["cost"].tolist() == [156.0]
+    (conflict,) = read_conflicts(mine).to_dict("records")
+    assert (conflict["key"], conflict["source"]) == (better.cell.key, str(other))
+    assert json.loads(conflict["row"])["cost"] == 150.0
+
+
+def test_another_path_of_the_same_cost_is_a_conflict_too(store_of):
+    mine, other = store_of("a", of(0)), store_of("b", of(0, path=np.ones((2, 2))))
+    with open_store(mine) as store:
+        (done,) = merge(store, [other])
+    assert len(done.conflicts) == 1
+
+
+def test_times_may_differ(store_of):
+    mine, other = store_of("a", of(0)), store_of("b", of(0, wall_s=99.0))
+    with open_store(mine) as store:
+        (done,) = merge(store, [other])
+    assert (done.same, done.conflicts) == (1, ())
+
+
+def test_several_stores_are_taken_in_one_after_the_other(store_of):
+    mine, sources = store_of("a"), [store_of("b", of(0)), store_of("c", of(0), of(1))]
+    with open_store(mine) as store:
+        first, second = merge(store, sources)
+    assert (first.added, second.added, second.same) == (1, 1, 1)
+
+
+@pytest.mark.parametrize("bad", ["itself", "missing", "no store"])
+def test_nothing_is_taken_in_if_one_of_the_stores_is_none(store_of, tmp_path, bad):
+    mine, good = store_of("a"), store_of("b", of(0))
+    (tmp_path / "text").write_text("no store, but long enough to have a header" * 9)
+    source = {"itself": mine, "missing": tmp_path / "x", "no store": tmp_path / "text"}[bad]
+    with open_store(mine) as store, pytest.raises(StoreError, match=source.name):
+        merge(store, [good, source])
+    assert read_runs(mine).empty
+
+
+def test_the_other_store_is_not_written_to(store_of):
+    mine, other = store_of("a"), store_of("b", of(0))
+    before = other.read_bytes()
+    with open_store(mine) as store:
+        merge(store, [other])
+    assert other.read_bytes() == before
+
+
+def test_all_columns_come_along(store_of):
+    record = of(0, stderr="last words", details={"x": 1.5}, clearance=0.25)
+    mine, other = store_of("a"), store_of("b", record)
+    with open_store(mine) as store:
+        merge(store, [other])
+    one, two = (read_runs(file).drop(columns="session") for file in (mine, other))
+    assert one.astype("object").fillna("-").equals(two.astype("object").fillna("-"))
+
+
+def test_conflicts_that_the_other_store_had_are_kept(store_of):
+    first, second = store_of("b", of(0)), store_of("c", of(0, cost=1.0))
+    with open_store(first) as store:
+        merge(store, [second])
+    mine = store_of("a")
+    with open_store(mine) as store:
+        merge(store, [first])
+    assert read_conflicts(mine)["source"].tolist() == [str(second)]
