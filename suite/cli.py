@@ -78,6 +78,8 @@ class ExportFormat(StrEnum):
 
     PARQUET = "parquet"
     CSV = "csv"
+    OMPL_LOG = "ompl-log"
+    PLANNER_ARENA = "planner-arena"
 
 
 class Rows(StrEnum):
@@ -501,16 +503,28 @@ def tables(
 @app.command()
 def export(
     store: StoreArgument,
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where to; made if missing.")],
+    target: Annotated[
+        Path, typer.Argument(metavar="DIR|FILE", help="Folder, or file of planner-arena.")
+    ],
     to: Annotated[ExportFormat, typer.Option(help="Kind of files.")] = ExportFormat.PARQUET,
 ) -> None:
-    """Export the rows of a store: runs, events, traces and paths, a file each.
+    """Export the rows of a store.
+
+    parquet, csv: runs, events, traces, paths, a file each. ompl-log: a log of OMPL's benchmarks for
+    each query. planner-arena: the database that Planner Arena reads, made of these logs.
 
     Example: kbga-bench export out/paper.db rows --to csv
     """
-    from suite.report.export import export_rows
+    if to in (ExportFormat.PARQUET, ExportFormat.CSV):
+        from suite.report.export import export_rows
 
-    for path in export_rows(store, directory, to.value):
+        files = export_rows(store, target, to.value)
+    else:
+        from suite.report.ompl_log import write_ompl_logs, write_planner_arena
+
+        is_log = to is ExportFormat.OMPL_LOG
+        files = write_ompl_logs(store, target) if is_log else [write_planner_arena(store, target)]
+    for path in files:
         typer.echo(path)
 
 
