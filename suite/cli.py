@@ -83,7 +83,7 @@ class ExportFormat(StrEnum):
 
 
 class Rows(StrEnum):
-    """Rows that a results folder can do without; its tables are of the runs."""
+    """Rows that a results folder can do without, once its tables and figures are made."""
 
     EVENTS = "events"
     TRACES = "traces"
@@ -485,7 +485,9 @@ def tables(
         Path | None, typer.Option(metavar="DIR", help="Write a file for each table instead.")
     ] = None,
 ) -> None:
-    """Print the tables of a store: a summary, and the paper's figures beside ours.
+    """Print the tables of a store: a summary, the paper's figures beside ours, and comparisons.
+
+    As text, tables of the rows behind another table are left out; a last line names them.
 
     Example: kbga-bench tables out/paper.db --format markdown
     """
@@ -497,7 +499,11 @@ def tables(
         for path in write_tables(found, output, Format(style)):
             typer.echo(path)
         return
-    typer.echo("\n".join(render(table, Format(style)) for table in found), nl=False)
+    hidden = [table.name for table in found if table.detail and style is TableFormat.TABLE]
+    shown = [render(table, Format(style)) for table in found if table.name not in hidden]
+    if hidden:
+        shown.append(f"Not printed, but written with --output: {', '.join(hidden)}.\n")
+    typer.echo("\n".join(shown), nl=False)
 
 
 @app.command()
