@@ -34,18 +34,17 @@ def simplify(problem: Problem) -> NDArray[np.float64]:
     def look() -> None:
         if problem.is_over():
             raise BudgetSpentError
-        collision.stop_at = min(collision.checks + CHECKS_BETWEEN_LOOKS, collision.limit)
+        collision.call_at(min(collision.checks + CHECKS_BETWEEN_LOOKS, collision.limit), look)
 
     solution = problem.definition.getSolutionPath()
     is_over = ob.PlannerTerminationCondition(problem.is_over)
-    collision.stop = look
-    collision.stop_at = collision.checks
+    collision.call_at(collision.checks, look)
     try:
         og.PathSimplifier(problem.information).simplify(solution, is_over, False)
     except BudgetSpentError:
         pass
     finally:
-        collision.stop = do_nothing  # which knew the problem, which knows the collision
+        collision.call_at(np.inf, do_nothing)  # ``look`` would keep the problem alive
     path = problem.path()
     assert path is not None
     return path
