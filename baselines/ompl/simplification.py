@@ -4,7 +4,6 @@ It cuts corners wherever the shortcut is free, and drops and merges vertices.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from ompl import base as ob
 from ompl import geometric as og
 
@@ -19,15 +18,11 @@ class BudgetSpentError(Exception):
     """Ends the simplifier in the middle of a step."""
 
 
-def simplify(problem: Problem) -> NDArray[np.float64]:
+def simplify(problem: Problem) -> None:
     """Simplify the problem's solution until nothing changes or the budget is spent.
 
     The path is free after each check. Merely refused when the budget is spent, OMPL would take the
     path for a colliding one and move its waypoints at random to mend it: an exception ends it.
-
-    Returns
-    -------
-    (n, 2) float64, metres: the path so far.
     """
     collision = problem.collision
 
@@ -45,6 +40,3 @@ def simplify(problem: Problem) -> NDArray[np.float64]:
         pass
     finally:
         collision.call_at(np.inf, do_nothing)  # ``look`` would keep the problem alive
-    path = problem.path()
-    assert path is not None
-    return path
