@@ -507,6 +507,36 @@ def tables(
 
 
 @app.command()
+def compare(
+    old: Annotated[Path, typer.Argument(metavar="OLD", help="Result store of before.")],
+    new: Annotated[Path, typer.Argument(metavar="NEW", help="Result store of after.")],
+    times: Annotated[
+        bool, typer.Option("--times", help="Let times decide too: of one quiet machine.")
+    ] = False,
+    style: Annotated[TableFormat, typer.Option("--format", help="How to print it.")] = (
+        TableFormat.TABLE
+    ),
+) -> None:
+    """Compare two stores of the same matrix: what got better, and what got worse.
+
+    Exit code 0 if nothing got worse, 1 if something did.
+
+    Example: kbga-bench compare before.db after.db
+    """
+    import numpy as np
+
+    from suite.report.table import Format, render
+    from suite.report.versions import BOOTSTRAP_SEED, compare_versions
+    from suite.store import read_runs
+
+    rng = np.random.default_rng(BOOTSTRAP_SEED)
+    found = compare_versions(read_runs(old), read_runs(new), rng, with_times=times)
+    typer.echo(render(found.table, Format(style)), nl=False)
+    typer.echo(f"\n{found.summary()}", err=style is not TableFormat.TABLE)
+    raise typer.Exit(1 if found.worse else 0)
+
+
+@app.command()
 def export(
     store: StoreArgument,
     target: Annotated[
