@@ -4,7 +4,6 @@
 processes. Rows come back to the caller's thread, which is the store's one writer.
 """
 
-import os
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import closing, contextmanager
@@ -12,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from suite.harness.cores import honest_jobs
 from suite.harness.isolate import kill_running, run_isolated, start_server
 from suite.harness.machine import provenance
 from suite.harness.matrix import Limits, Matrix
@@ -80,7 +80,7 @@ def run_matrix(
     store : Store
         Open for writing.
     jobs : int, optional
-        Runs at a time; default: the number of processors.
+        Runs at a time; default: what leaves their timing honest.
     quick : bool
         Only the first two seeds.
     executor : Executor, optional
@@ -98,7 +98,7 @@ def run_matrix(
     KeyboardInterrupt
         After Ctrl-C, when the runs in flight are killed. All finished rows are in the store.
     """
-    jobs = jobs or os.cpu_count() or 1
+    jobs = jobs or honest_jobs()
     cells = matrix.cells(quick=quick)
     there = store.keys()
     missing = interleaved([cell for cell in cells if cell.key not in there])
@@ -135,7 +135,9 @@ def warmth_for(cells: Iterable[Cell], limits: Limits) -> Warmth:
     """What the fork server should have ready for these cells."""
     planners = {(c.planner, canonical_json(c.settings)) for c in cells}
     queries = {(c.scene_source, c.query) for c in cells}
-    return Warmth(tuple(sorted(planners)), tuple(sorted(queries)), limits.warm_up_s)
+    return Warmth(
+        tuple(sorted(planners)), tuple(sorted(queries)), limits.warm_up_s, limits.memory_bytes
+    )
 
 
 @contextmanager
