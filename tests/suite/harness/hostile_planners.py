@@ -232,6 +232,19 @@ class DaemonizesAndHangs(_Base):
             pass
 
 
+class LeavesItsSessionAndHangs(_Base):
+    """In a child that keeps all descriptors."""
+
+    name = "leaves-its-session-and-hangs"
+
+    def misbehave(self):
+        if os.fork() == 0:
+            os.setsid()
+            time.sleep(60)
+        while True:
+            pass
+
+
 class KillsItsParent(_Base):
     name = "kills-its-parent"
 

@@ -6,6 +6,8 @@ import numpy as np
 import psutil
 import pytest
 
+from suite.harness import warm
+from suite.harness.cell import build_planner
 from suite.harness.cores import honest_cores
 from suite.harness.isolate import run_isolated
 from suite.harness.matrix import Limits
@@ -115,6 +117,17 @@ def test_memory_counts_for_all_processes_of_a_run_together(run):
     record = run("lets-a-daemon-eat", limits=Limits(wall_s=30.0, memory_mb=400.0))
     assert record.status is PlanStatus.OUT_OF_MEMORY
     assert record.reason.startswith("plan held")
+
+
+def test_warming_up_has_the_same_limit_on_memory(run):
+    record = run("eats-in-warm-up", limits=Limits(warm_up_s=120.0, memory_mb=400.0))
+    assert record.status is PlanStatus.OUT_OF_MEMORY
+    assert record.reason.startswith("warm-up held")
+
+
+def test_a_planner_that_takes_the_memory_when_the_fork_server_tries_it_stays_cold(hostile):
+    planner = build_planner("eats-in-warm-up", {})
+    assert not warm._survives(planner.warm_up, limit_s=120.0, memory_bytes=400_000_000)
 
 
 def test_runs_leave_the_environment_and_the_folder_of_the_harness_alone(run):

@@ -1,5 +1,6 @@
 """However a harness ends, no process outlives it: not in a run, and not while it warms up."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -17,7 +18,7 @@ from suite.harness.matrix import load_matrix
 from suite.store import open_store
 from pathlib import Path
 with open_store(Path(sys.argv[2])) as store:
-    run_matrix(load_matrix(sys.argv[1]), store, jobs=2)
+    run_matrix(load_matrix(sys.argv[1]), store, jobs=int(sys.argv[3]))
 """
 PATIENCE_S = 30.0
 
@@ -30,19 +31,26 @@ def marked():
 
 @pytest.fixture
 def harness(hostile, wall_file, tmp_path, marked):
-    def start(*planners):
+    running = []
+
+    def start(*planners, jobs=1):
         file = tmp_path / "matrix.toml"
         entries = "".join(f'[[planner]]\nplanner = "{name}"\n' for name in planners)
         file.write_text(f'scenes = ["{wall_file}"]\nseeds = 2\n{entries}')
         name, value = marked.split("=")
-        return subprocess.Popen(
-            [sys.executable, "-c", HARNESS, file, tmp_path / "store.db"],
+        process = subprocess.Popen(
+            [sys.executable, "-c", HARNESS, file, tmp_path / "store.db", str(jobs)],
             env={**os.environ, name: value},
             stderr=subprocess.PIPE,
             start_new_session=True,
         )
+        running.append(process)
+        return process
 
-    return start
+    yield start
+    for process in running:
+        process.kill()
+        process.communicate()
 
 
 def alive(marked):
@@ -66,23 +74,19 @@ def wait_until(condition):
         time.sleep(0.05)
 
 
-def is_daemon(process):
-    """Whether a process has let go of all its descriptors."""
-    try:
-        return process.num_fds() == 0
-    except psutil.Error:
-        return False
+def sessions(marked):
+    """How many sessions: the harness's own, one for a run or a trial warm-up, one for a daemon."""
+    found = set()
+    for process in alive(marked):
+        with contextlib.suppress(ProcessLookupError):
+            found.add(os.getsid(process.pid))
+    return len(found)
 
 
-def is_warming(marked):
-    """Whether the fork server tries a warm-up in a process, which leads a session of its own."""
-    servers = [p for p in alive(marked) if "forkserver" in " ".join(p.cmdline())]
-    return any(os.getsid(p.pid) == p.pid for p in servers)
-
-
-def test_a_killed_harness_leaves_no_process_not_even_a_daemon(harness, marked):
-    process = harness("daemonizes-and-hangs")
-    wait_until(lambda: any(map(is_daemon, alive(marked))))
+@pytest.mark.parametrize("planner", ["daemonizes-and-hangs", "leaves-its-session-and-hangs"])
+def test_a_killed_harness_leaves_no_process_not_even_a_daemon(harness, marked, planner):
+    process = harness(planner)
+    wait_until(lambda: sessions(marked) == 3)
     process.kill()
     process.wait()
     wait_until(lambda: not alive(marked))
@@ -90,7 +94,7 @@ def test_a_killed_harness_leaves_no_process_not_even_a_daemon(harness, marked):
 
 def test_a_harness_that_is_killed_while_it_warms_up_leaves_no_process(harness, marked):
     process = harness("hangs-in-warm-up")
-    wait_until(lambda: is_warming(marked))
+    wait_until(lambda: sessions(marked) == 2)
     process.kill()
     process.wait()
     wait_until(lambda: not alive(marked))
@@ -98,8 +102,8 @@ def test_a_harness_that_is_killed_while_it_warms_up_leaves_no_process(harness, m
 
 @pytest.mark.parametrize("send", [os.kill, os.killpg], ids=["harness", "terminal"])
 def test_ctrl_c_ends_a_harness_that_is_still_warming_up(harness, marked, send):
-    process = harness("hangs-in-warm-up")
-    wait_until(lambda: is_warming(marked))
+    process = harness("hangs-in-warm-up", jobs=2)
+    wait_until(lambda: sessions(marked) == 2)
     began = time.monotonic()
     send(process.pid, signal.SIGINT)
     _, said = process.communicate(timeout=PATIENCE_S)
