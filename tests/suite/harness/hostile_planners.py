@@ -375,6 +375,17 @@ class ChangesTheScene(_Base):
         return Plan(PlanStatus.SOLVED, np.array([query.start, query.goal]))
 
 
+class MovesTheGoal(_Base):
+    """Not by mistake."""
+
+    name = "moves-the-goal"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        query.goal.setflags(write=True)
+        query.goal[:] = query.start + 0.1
+        return Plan(PlanStatus.SOLVED, np.array([query.start, query.goal]))
+
+
 class ChangesObstacles(_Base):
     name = "changes-obstacles"
 
