@@ -85,7 +85,10 @@ def _record(cell: Cell, before_plan: Callable[[], None]) -> RunRecord:
 def _become_own_group() -> None:
     """Out of the terminal's reach (Ctrl-C is the harness's), and killable with all descendants."""
     os.setsid()
+    # The fork server ignores them.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     adopt_orphans()
     # What is left of the fork server's own pipe: it tells the server that somebody needs it, which
     # is not for a run to say, and the server dies of what is written into it.

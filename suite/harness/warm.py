@@ -83,10 +83,12 @@ def warm(wanted: Mapping[str, Any]) -> None:
 def _become_server() -> None:
     """What this process must be before it meets a plugin: quiet, and answerable for its children.
 
-    Ctrl-C is for the harness, which kills the server if it must. When the harness is gone, the
-    server ends, and whatever still descends from it goes first.
+    Ctrl-C is for the harness, which kills the server if it must, and so are the signals that a
+    terminal or a batch system sends to the whole group. When the harness is gone, the server ends,
+    and whatever still descends from it goes first.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
     adopt_orphans()
     # It says so of each orphan that it reaps.
     warnings.filterwarnings("ignore", message="forkserver: waitpid returned unexpected pid")

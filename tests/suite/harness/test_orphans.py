@@ -92,10 +92,17 @@ def test_a_killed_harness_leaves_no_process_not_even_a_daemon(harness, marked, p
     wait_until(lambda: not alive(marked))
 
 
-def test_a_harness_that_is_killed_while_it_warms_up_leaves_no_process(harness, marked):
+@pytest.mark.parametrize(
+    ("send", "number"),
+    [(os.kill, signal.SIGKILL), (os.killpg, signal.SIGTERM)],
+    ids=["kill-9", "batch-system"],
+)
+def test_a_harness_that_is_killed_while_it_warms_up_leaves_no_process(
+    harness, marked, send, number
+):
     process = harness("hangs-in-warm-up")
     wait_until(lambda: sessions(marked) == 2)
-    process.kill()
+    send(process.pid, number)
     process.wait()
     wait_until(lambda: not alive(marked))
 
