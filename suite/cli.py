@@ -334,7 +334,7 @@ def run(
     ],
     store: Annotated[Path, typer.Option(metavar="FILE", help="Result store; made if missing.")],
     jobs: Annotated[
-        int | None, typer.Option(min=1, help="Runs at a time; default: one per processor.")
+        int | None, typer.Option(min=1, help="Runs at a time; default: one per physical core.")
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Only the first two seeds.")] = False,
     force: Annotated[

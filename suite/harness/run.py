@@ -13,6 +13,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from suite.harness.cores import honest_jobs
 from suite.harness.isolate import kill_running, run_isolated, start_server
 from suite.harness.machine import provenance
 from suite.harness.matrix import Limits, Matrix
@@ -119,7 +120,7 @@ def run_matrix(
     store : Store
         Open for writing.
     jobs : int, optional
-        Runs at a time; default: the number of processors.
+        Runs at a time; default: what leaves their timing honest.
     quick : bool
         Only the first two seeds.
     which : Which
@@ -139,7 +140,7 @@ def run_matrix(
     KeyboardInterrupt
         After Ctrl-C, when the runs in flight are killed. All finished rows are in the store.
     """
-    jobs = jobs or os.cpu_count() or 1
+    jobs = jobs or honest_jobs()
     cells = matrix.cells(quick=quick)
     there = store.statuses()
     missing = to_run(cells, there, which)
@@ -207,7 +208,9 @@ def warmth_for(cells: Iterable[Cell], limits: Limits) -> Warmth:
     """What the fork server should have ready for these cells."""
     planners = {(c.planner, canonical_json(c.settings)) for c in cells}
     queries = {(c.scene_source, c.query) for c in cells}
-    return Warmth(tuple(sorted(planners)), tuple(sorted(queries)), limits.warm_up_s)
+    return Warmth(
+        tuple(sorted(planners)), tuple(sorted(queries)), limits.warm_up_s, limits.memory_bytes
+    )
 
 
 @contextmanager
