@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from suite.report.anytime import Array, Steps, first_within
-from suite.report.panels import PLANNERS_AT_MOST, legend, look, numbered, plain_number
+from suite.report.panels import PLANNERS_AT_MOST, legend, logarithmic_time, look, numbered
 from suite.report.ranking import scene_scores
 
 TARGETS = 10.0 ** np.linspace(0.0, -3.0, 31)
@@ -141,9 +141,7 @@ def plot_profile(scores: pd.DataFrame) -> Figure:
 
 
 def _logarithmic(axes: Axes, low: float, high: float) -> None:
-    axes.set_xscale("log")
-    axes.set_xlim(low, high)
-    axes.xaxis.set_major_formatter(plain_number)
+    logarithmic_time(axes, low, high)
     axes.grid(alpha=0.3, linewidth=0.5)
 
 
