@@ -99,12 +99,22 @@ SettingsOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="A setting of the planner; repeatable."),
 ]
+PluginOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--plugin",
+        metavar="FILE",
+        help="Planners in FILE.py, or one as FILE.py:CLASS or MODULE:CLASS, without installing "
+        "them; repeatable.",
+    ),
+]
 TextStyle = Annotated[TextFormat, typer.Option("--format", help="For people or programs.")]
 
 
 @app.command("list")
 def list_command(
     what: Annotated[What, typer.Argument(help="What to list.")],
+    plugin: PluginOption = None,
     style: Annotated[ListFormat, typer.Option("--format", help="For people or programs.")] = (
         ListFormat.TABLE
     ),
@@ -115,6 +125,7 @@ def list_command(
     """
     from suite import listing
 
+    _use_plugins(plugin)
     rows = {
         What.SCENES: listing.scenes_listing,
         What.PLANNERS: listing.planners_listing,
@@ -181,6 +192,7 @@ def plan(
     seed: SeedOption = 0,
     query: QueryOption = None,
     settings: SettingsOption = None,
+    plugin: PluginOption = None,
     wall_s: Annotated[float | None, typer.Option(help="Budget: seconds of wall time.")] = None,
     generations: Annotated[
         int | None, typer.Option(help="Budget: generations or iterations.")
@@ -201,6 +213,7 @@ def plan(
     from suite.harness.single import as_data, as_text, cell_for, parse_settings, succeeded
     from suite.planner import Budget, Recorder
 
+    _use_plugins(plugin)
     cell = cell_for(
         scene,
         planner,
@@ -233,6 +246,7 @@ def simulate(
     seed: SeedOption = 0,
     query: QueryOption = None,
     settings: SettingsOption = None,
+    plugin: PluginOption = None,
     cold: Annotated[
         bool, typer.Option("--cold", help="Plan afresh at every update, whatever the planner can.")
     ] = False,
@@ -275,6 +289,7 @@ def simulate(
     from suite.harness.single import parse_settings
     from suite.planner import Budget
 
+    _use_plugins(plugin)
     wanted = Wanted(
         scene,
         planner,
@@ -324,6 +339,7 @@ def run(
         int | None, typer.Option(min=1, help="Runs at a time; default: one per processor.")
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Only the first two seeds.")] = False,
+    plugin: PluginOption = None,
 ) -> None:
     """Run what a store still lacks of a matrix, each run in a process of its own.
 
@@ -336,6 +352,7 @@ def run(
     from suite.harness.run import run_matrix
     from suite.store import open_store
 
+    _use_plugins(plugin)
     wanted = load_matrix(matrix)
     with open_store(store) as opened:
         try:
@@ -421,6 +438,12 @@ def main() -> None:
     except KbgaBenchError as error:
         typer.echo(f"kbga-bench: error: {_one_line(error)}", err=True)
         sys.exit(2)
+
+
+def _use_plugins(references: list[str] | None) -> None:
+    from suite.plugin_file import name_plugins
+
+    name_plugins(references or [])
 
 
 def _one_line(text: object) -> str:

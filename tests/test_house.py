@@ -13,7 +13,7 @@ PACKAGES = ("suite", "kbga", "baselines")
 FLOORS = (
     {"compiled", "errors", "geometry", "quiet"},
     {"dynamics", "scene", "scene_file", "exact"},
-    {"planner", "plugins"},
+    {"planner", "plugin_class", "plugin_file", "plugins"},
     {"scenes", "record", "referee"},
     {"conformance", "store"},
     {"harness", "dynamic", "report", "paper", "listing"},
