@@ -240,6 +240,37 @@ def plan(
 
 
 @app.command()
+def check(
+    planner: Annotated[
+        str, typer.Argument(metavar="PLANNER", help="Name of the planner; see `list planners`.")
+    ],
+    settings: SettingsOption = None,
+    plugin: PluginOption = None,
+    limit_s: Annotated[
+        float, typer.Option(min=1.0, help="Seconds after which a rule that hangs is ended.")
+    ] = 30.0,
+    style: TextStyle = TextFormat.TEXT,
+) -> None:
+    """Check that a planner keeps the plugin contract, rule by rule.
+
+    Exit code 0 if it does, 1 if a rule is broken; what to do about it stands with each rule.
+
+    Example: kbga-bench check kbga --set population_size=20
+    """
+    from suite.conformance.report import as_data, as_text, broken
+    from suite.harness.check import check as apply_rules
+    from suite.harness.single import parse_settings
+
+    _use_plugins(plugin)
+    results = apply_rules(planner, parse_settings(settings or []), limit_s)
+    if style is TextFormat.JSON:
+        _print_json(as_data(planner, results))
+    else:
+        typer.echo(as_text(planner, results))
+    raise typer.Exit(1 if broken(results) else 0)
+
+
+@app.command()
 def simulate(
     scene: SceneArgument,
     planner: PlannerOption,
