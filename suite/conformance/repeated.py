@@ -39,6 +39,8 @@ def another_seed_another_stream(subject: Subject) -> Outcome:
     drew = any(trial.drew for r in runs for trial in r)
     if subject.planner_class.abilities.deterministic:
         return _not_deterministic(differing[0]) if differing else None
+    if not differing and drew and not any(trial.ends for r in runs for trial in r):
+        return NotApplicable("no run found a path by which seeds could be told apart.")
     return None if differing else _no_stream(drew)
 
 

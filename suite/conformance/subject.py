@@ -22,7 +22,7 @@ from suite.scene import Scene
 CLAIMABLE = (PlanStatus.SOLVED, PlanStatus.INFEASIBLE, PlanStatus.EXHAUSTED)
 SEED = 1
 
-GENERATIONS = 40
+GENERATIONS = 10
 CHECKS = 4000
 WALL_S = 0.2
 """Ordinary budgets: enough for simple scenes, and little enough that no author has to wait."""
@@ -225,6 +225,12 @@ def form_of(returned: Any) -> str | None:
     if path.ndim != 2 or path.shape[1] != 2 or len(path) < 1 or not np.isfinite(path).all():
         return f"the path has the shape {path.shape}, or numbers that are not finite"
     return None
+
+
+def times(budget: Budget, factor: int) -> Budget:
+    """So many times a budget."""
+    limits = {name: getattr(budget, name) for name in ("wall_s", "generations", "checks")}
+    return Budget(**{name: factor * limit for name, limit in limits.items() if limit is not None})
 
 
 def optimum(scene: SmallScene) -> float:
