@@ -271,6 +271,29 @@ def check(
 
 
 @app.command()
+def new_planner(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Of the planner and its package: my-planner.")
+    ],
+    output: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Where to; default: a folder of that name.")
+    ] = None,
+) -> None:
+    """Write a planner to start from: a package with a module, its metadata and a test.
+
+    It keeps the contract as it is; see `check`.
+
+    Example: kbga-bench new-planner my-planner --output my-planner
+    """
+    from suite.new_planner import write_new_planner
+
+    files = write_new_planner(name, output)
+    for file in files:
+        typer.echo(file)
+    typer.echo(f"Try it: kbga-bench check {name} --plugin {files[0]}")
+
+
+@app.command()
 def simulate(
     scene: SceneArgument,
     planner: PlannerOption,

@@ -16,7 +16,7 @@ FLOORS = (
     {"planner", "plugin_class", "plugin_file", "plugins"},
     {"scenes", "record", "referee"},
     {"conformance", "store"},
-    {"harness", "dynamic", "report", "paper", "listing"},
+    {"harness", "dynamic", "report", "paper", "listing", "new_planner"},
     {"cli"},
 )
 LONGEST_FILE = 700
