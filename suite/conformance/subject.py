@@ -29,6 +29,9 @@ WALL_S = 0.2
 
 TRACEBACK_LINES = 8
 
+_lent: dict[str, Scene] = {}
+"""The scenes that planners are given, by name; one that was written to is built anew."""
+
 
 @dataclass(frozen=True, eq=False)
 class Trial:
@@ -165,7 +168,7 @@ class Subject:
         planner: Planner | None = None,
     ) -> Trial:
         """One run, by a new planner or by one that is given; kept by nobody."""
-        given = _lent(scene)
+        given = _lent.get(scene.name) or _lent.setdefault(scene.name, scene.build())
         query, budget, recorder = given.query(), budget or self.ordinary, Recorder()
         rng = np.random.default_rng([seed, 2003])
         self._on_run(run_in_words(scene, seed, budget))
@@ -187,7 +190,7 @@ class Subject:
         after, changed = Surroundings.now(), fingerprint(given, query) != scene_before
         outer.restore()
         if changed:
-            _lent.cache_clear()
+            del _lent[scene.name]
         return Trial(
             scene,
             budget,
@@ -244,12 +247,6 @@ def run_in_words(scene: SmallScene, seed: int, budget: Budget) -> str:
     parts = {name: getattr(budget, name) for name in ("wall_s", "generations", "checks")}
     inner = ", ".join(f"{name}={value}" for name, value in parts.items() if value is not None)
     return f"on '{scene.name}' with seed {seed} and Budget({inner})"
-
-
-@lru_cache(maxsize=16)
-def _lent(scene: SmallScene) -> Scene:
-    """The scene that planners get; built anew when one has written to it."""
-    return scene.build()
 
 
 @lru_cache(maxsize=16)

@@ -6,6 +6,7 @@ import sys
 
 import pytest
 
+from suite.cli import main
 from suite.errors import PluginError
 from suite.plugin_file import VARIABLE, name_plugins, named_plugins
 from suite.plugins import available_planners, load_planner, planner_names
@@ -112,6 +113,36 @@ def test_what_cannot_be_used_is_refused_with_its_reason(file, reference, code, m
         name_plugins([reference.format(file=file)])
     assert message in str(error.value)
     assert named_plugins() == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "printed"),
+    [
+        (["list", "planners"], 0, "my_planners.py"),
+        (["plan", "{wall}", "--planner", "bent"], 1, "invalid"),
+        (["simulate", "{wall}", "--planner", "bent", "--time-limit", "1"], 1, "wall / bent"),
+    ],
+)
+def test_each_command_that_names_planners_takes_it(
+    file, wall_file, arguments, code, printed, monkeypatch, capsys
+):
+    words = [word.format(wall=wall_file) for word in arguments]
+    monkeypatch.setattr(sys, "argv", ["kbga-bench", *words, "--plugin", str(file)])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert int(ended.value.code or 0) == code
+    assert printed in capsys.readouterr().out
+
+
+def test_a_plugin_that_cannot_be_used_is_one_line_and_ends_the_command(file, monkeypatch, capsys):
+    file.write_text("import no_such_module")
+    monkeypatch.setattr(sys, "argv", ["kbga-bench", "list", "planners", "--plugin", str(file)])
+    with pytest.raises(SystemExit, match="2"):
+        main()
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.count("\n") == 1
+    assert "ModuleNotFoundError: No module named 'no_such_module'" in told.err
 
 
 def test_a_matrix_runs_it_in_other_processes_and_changed_code_runs_anew(file, wall_file):

@@ -324,6 +324,8 @@ class MovesTheStart(DoesSomethingElse):
     name = "moves-the-start"
 
     def misbehave(self, scene, query):
+        if len(scene.obstacles) > 100:
+            return  # it takes long to build such a scene anew
         query.start.setflags(write=True)
         np.add(query.start, 1e-3, out=query.start)
 

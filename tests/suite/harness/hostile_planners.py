@@ -226,3 +226,19 @@ class EatsMemory(_Base):
 
     def misbehave(self):
         raise MemoryError
+
+
+class WrongSignature(_Base):
+    name = "wrong-signature"
+
+    def plan(self, scene, query):
+        return Plan(PlanStatus.EXHAUSTED)
+
+
+class NewerInterface(_Base):
+    name = "newer-interface"
+    interface = 2
+
+
+class NoPlan(Planner):
+    name = "no-plan"
