@@ -30,12 +30,12 @@ def keeps_wall_time(subject: Subject) -> Outcome:
         return NotApplicable("wall_s is not among the budgets that it keeps.")
     for scene in subject.on(*HARD):
         late = [subject.trial(scene, Budget(wall_s=WALL_S))]
-        while late[-1].wall_s > WALL_S + LATE_S and len(late) < ATTEMPTS:
+        while late[-1].run.wall_s > WALL_S + LATE_S and len(late) < ATTEMPTS:
             late.append(subject.trial(scene, Budget(wall_s=WALL_S)))
-        best = min(late, key=lambda trial: trial.wall_s)
-        if best.wall_s > WALL_S + LATE_S:
+        best = min(late, key=lambda trial: trial.run.wall_s)
+        if best.run.wall_s > WALL_S + LATE_S:
             return Finding(
-                f"{best.label}: it took {best.wall_s:.2f} s, the quickest of {ATTEMPTS} runs",
+                f"{best.label}: it took {best.run.wall_s:.2f} s, the quickest of {ATTEMPTS} runs",
                 f"about {WALL_S} s, and {WALL_S + LATE_S} s at the very most",
                 "Ask recorder.wall_s() in the innermost loop that lasts, and end when it reaches "
                 "budget.wall_s; or leave wall_s out of abilities.budgets.",
@@ -62,7 +62,7 @@ def _counted(subject: Subject, name: str, limit: int, most: int) -> Outcome:
     for scene in subject.on(*HARD):
         trial = subject.trial(scene, Budget(**{name: limit}))
         if trial.refused:
-            return _uncounted(trial, name, f"refused: {trial.refusal}", most)
+            return _uncounted(trial, name, f"refused: {trial.run.refusal}", most)
         if trial.plan is None:
             continue
         count = getattr(trial.plan, name)
@@ -76,7 +76,7 @@ def _counted(subject: Subject, name: str, limit: int, most: int) -> Outcome:
 
 def _reported(trial: Trial, name: str) -> Iterator[int]:
     field = {"generations": "generation"}.get(name, name)
-    reports: list[Any] = [getattr(report, field) for report in trial.recorder.improvements]
+    reports: list[Any] = [getattr(report, field) for report in trial.run.recorder.improvements]
     return (count for count in reports if count is not None)
 
 
@@ -93,13 +93,13 @@ def ends_or_refuses_whatever_the_budget(subject: Subject) -> Outcome:
     kept = subject.planner_class.abilities.budgets
     others = [Budget(**{field.name: 1}) for field in fields(Budget) if field.name not in kept]
     # Where an ordinary run raises something, another rule says it.
-    good = {trial.scene.name for trial in subject.trials if trial.error is None}
+    good = {trial.scene.name for trial in subject.trials if trial.run.error is None}
     for budget in (Budget(), *others):
         for scene in subject.on(*good & {"one wall", "enclosed goal"}):
             trial = subject.trial(scene, budget)
-            if trial.error is not None:
+            if trial.run.error is not None:
                 return Finding(
-                    f"{trial.label}: {trial.error}",
+                    f"{trial.label}: {trial.run.error}",
                     "a run that ends, or a refusal with a reason",
                     "Give the planner a stop criterion of its own, or let `refuse` return a "
                     "sentence for budgets that it can't work with.",

@@ -33,10 +33,10 @@ def runs_end_without_an_exception(subject: Subject) -> Outcome:
     """A run ends, and raises no exception, whatever the scene."""
 
     def judge(trial: Trial) -> Finding | None:
-        if trial.error is None:
+        if trial.run.error is None:
             return None
         return Finding(
-            f"{trial.label}: {trial.error}",
+            f"{trial.label}: {trial.run.error}",
             "a Plan, also where there is nothing to find",
             "Handle that scene, or refuse it: `refuse` returns a sentence that says why.",
         )
@@ -48,7 +48,7 @@ def refuses_with_a_reason(subject: Subject) -> Outcome:
     """What refuse returns is None, or a sentence."""
 
     def judge(trial: Trial) -> Finding | None:
-        said = trial.refusal
+        said = trial.run.refusal
         if said is None or trial.refused:
             return None
         return Finding(
@@ -64,7 +64,7 @@ def returns_a_plan(subject: Subject) -> Outcome:
     """A run returns a Plan that says solved with a path, infeasible or exhausted."""
 
     def judge(trial: Trial) -> Finding | None:
-        wrong = None if _has_not_run(trial) else form_of(trial.returned)
+        wrong = None if _has_not_run(trial) else form_of(trial.run.returned)
         if wrong is None:
             return None
         return Finding(
@@ -121,7 +121,7 @@ def solves_what_is_trivial(subject: Subject) -> Outcome:
             more = subject.trial(trial.scene, times(subject.ordinary, factor))
             if not _is_without_a_path(more):
                 return None
-        what = f"refused: {trial.refusal}" if trial.refused else "no path was found"
+        what = f"refused: {trial.run.refusal}" if trial.refused else "no path was found"
         return Finding(
             f"{trial.label}: {what}, nor with {MORE[-1]} times the budget",
             "a path: nothing is in the way, and the budget is one that it says it keeps",
@@ -195,7 +195,9 @@ def _finding_of_exactness(trial: Trial) -> Finding | None:
 
 def improvements_agree_with_the_result(subject: Subject) -> Outcome:
     """What it reports while it runs gets better, and the last of it is what it returns."""
-    return _first(subject, lambda trial: _finding_of_reports(trial, trial.recorder.improvements))
+    return _first(
+        subject, lambda trial: _finding_of_reports(trial, trial.run.recorder.improvements)
+    )
 
 
 def _finding_of_reports(trial: Trial, reports: list[Improvement]) -> Finding | None:
@@ -242,7 +244,7 @@ def anytime_reports(subject: Subject) -> Outcome:
         return NotApplicable("it is not called anytime.")
 
     def judge(trial: Trial) -> Finding | None:
-        if trial.length is None or trial.recorder.improvements:
+        if trial.length is None or trial.run.recorder.improvements:
             return None
         return Finding(
             f"{trial.label}: solved, and nothing was reported",
@@ -272,7 +274,7 @@ def claimed_cost_is_the_length(subject: Subject) -> Outcome:
 
 
 def _has_not_run(trial: Trial) -> bool:
-    return trial.error is not None or trial.refusal is not None
+    return trial.run.error is not None or trial.run.refusal is not None
 
 
 def _allowed(length: float) -> float:

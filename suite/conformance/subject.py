@@ -33,17 +33,31 @@ _lent: dict[str, Scene] = {}
 """The scenes that planners are given, by name; one that was written to is built anew."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Run:
+    """What a planner did.
+
+    recorder : what it reported.
+    refusal : what ``refuse`` returned.
+    returned : what ``plan`` returned; None if it was not called.
+    error : the end of the traceback, if anything raised.
+    wall_s : what ``plan`` took, seconds.
+    """
+
+    recorder: Recorder
+    refusal: Any = None
+    returned: Any = None
+    error: str | None = None
+    wall_s: float = 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """One run of a planner, and what was seen of it.
+    """One run of a planner, and what was seen around it.
 
     scene : which of the kit.
     budget, seed : what it was given.
-    refusal : what ``refuse`` returned.
-    error : the end of the traceback, if anything raised.
-    returned : what ``plan`` returned; None if it was not called.
-    recorder : what it reported.
-    wall_s : what ``plan`` took, seconds.
+    run : what it did.
     drew : whether anything was drawn from the stream.
     scene_changed : whether the scene or the query was written to.
     before, after : the process around it.
@@ -52,11 +66,7 @@ class Trial:
     scene: SmallScene
     budget: Budget
     seed: int
-    refusal: Any
-    error: str | None
-    returned: Any
-    recorder: Recorder
-    wall_s: float
+    run: Run
     drew: bool
     scene_changed: bool
     before: Surroundings
@@ -70,12 +80,12 @@ class Trial:
     @property
     def refused(self) -> bool:
         """Whether it was refused with a reason."""
-        return isinstance(self.refusal, str) and bool(self.refusal.strip())
+        return isinstance(self.run.refusal, str) and bool(self.run.refusal.strip())
 
     @property
     def plan(self) -> Plan | None:
         """What was returned, if it has the form of a plan."""
-        return self.returned if form_of(self.returned) is None else None
+        return self.run.returned if form_of(self.run.returned) is None else None
 
     @property
     def ends(self) -> bool:
@@ -104,8 +114,8 @@ class Trial:
         """All of the run that must be the same when it is repeated: everything but times."""
         plan = self.plan
         if plan is None:
-            return (str(self.refusal), self.error)
-        told = tuple((i.cost, i.generation, i.checks) for i in self.recorder.improvements)
+            return (str(self.run.refusal), self.run.error)
+        told = tuple((i.cost, i.generation, i.checks) for i in self.run.recorder.improvements)
         path = None if plan.path is None else np.asarray(plan.path, dtype=np.float64).tobytes()
         return (str(plan.status), path, plan.generations, plan.checks, told)
 
@@ -168,43 +178,38 @@ class Subject:
         planner: Planner | None = None,
     ) -> Trial:
         """One run, by a new planner or by one that is given; kept by nobody."""
-        given = _lent.get(scene.name) or _lent.setdefault(scene.name, scene.build())
-        query, budget, recorder = given.query(), budget or self.ordinary, Recorder()
-        rng = np.random.default_rng([seed, 2003])
+        budget, rng = budget or self.ordinary, np.random.default_rng([seed, 2003])
         self._on_run(run_in_words(scene, seed, budget))
-        outer = Surroundings.now()
+        given = _lent.get(scene.name) or _lent.setdefault(scene.name, scene.build())
+        outer, stream = Surroundings.now(), str(rng.bit_generator.state)
         seed_globals(seed)
-        before, scene_before = Surroundings.now(), fingerprint(given, query)
-        refusal, returned, error, wall_s = None, None, None, 0.0
-        start = str(rng.bit_generator.state)
-        try:
-            planner = self.build() if planner is None else planner
-            planner.warm_up()
-            refusal = planner.refuse(given, query, budget)
-            if refusal is None:
-                recorder.start_clock()
-                returned = planner.plan(given, query, budget, rng, recorder)
-                wall_s = recorder.wall_s()
-        except (Exception, SystemExit):  # other people's code: it may raise anything
-            error = "\n".join(traceback.format_exc().strip().splitlines()[-TRACEBACK_LINES:])
-        after, changed = Surroundings.now(), fingerprint(given, query) != scene_before
+        before, drawn = Surroundings.now(), fingerprint(given, given.query())
+        run = _run(self.build if planner is None else lambda: planner, given, budget, rng)
+        after, changed = Surroundings.now(), fingerprint(given, given.query()) != drawn
         outer.restore()
         if changed:
             del _lent[scene.name]
-        return Trial(
-            scene,
-            budget,
-            seed,
-            refusal,
-            error,
-            returned,
-            recorder,
-            wall_s,
-            str(rng.bit_generator.state) != start,
-            changed,
-            before,
-            after,
-        )
+        drew = str(rng.bit_generator.state) != stream
+        return Trial(scene, budget, seed, run, drew, changed, before, after)
+
+
+def _run(
+    build: Callable[[], Planner], scene: Scene, budget: Budget, rng: np.random.Generator
+) -> Run:
+    """Do what the harness does with a planner, and take whatever comes of it."""
+    query, recorder = scene.query(), Recorder()
+    try:
+        planner = build()
+        planner.warm_up()
+        refusal = planner.refuse(scene, query, budget)
+        if refusal is not None:
+            return Run(recorder, refusal=refusal)
+        recorder.start_clock()
+        returned = planner.plan(scene, query, budget, rng, recorder)
+        return Run(recorder, returned=returned, wall_s=recorder.wall_s())
+    except (Exception, SystemExit):  # other people's code: it may raise anything
+        lines = traceback.format_exc().strip().splitlines()[-TRACEBACK_LINES:]
+        return Run(recorder, error="\n".join(lines))
 
 
 def form_of(returned: Any) -> str | None:
