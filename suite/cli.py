@@ -101,12 +101,22 @@ SettingsOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="A setting of the planner; repeatable."),
 ]
+PluginOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--plugin",
+        metavar="FILE",
+        help="Planners in FILE.py, or one as FILE.py:CLASS or MODULE:CLASS, without installing "
+        "them; repeatable.",
+    ),
+]
 TextStyle = Annotated[TextFormat, typer.Option("--format", help="For people or programs.")]
 
 
 @app.command("list")
 def list_command(
     what: Annotated[What, typer.Argument(help="What to list.")],
+    plugin: PluginOption = None,
     style: Annotated[ListFormat, typer.Option("--format", help="For people or programs.")] = (
         ListFormat.TABLE
     ),
@@ -117,6 +127,7 @@ def list_command(
     """
     from suite import listing
 
+    _use_plugins(plugin)
     rows = {
         What.SCENES: listing.scenes_listing,
         What.PLANNERS: listing.planners_listing,
@@ -183,6 +194,7 @@ def plan(
     seed: SeedOption = 0,
     query: QueryOption = None,
     settings: SettingsOption = None,
+    plugin: PluginOption = None,
     wall_s: Annotated[float | None, typer.Option(help="Budget: seconds of wall time.")] = None,
     generations: Annotated[
         int | None, typer.Option(help="Budget: generations or iterations.")
@@ -203,6 +215,7 @@ def plan(
     from suite.harness.single import as_data, as_text, cell_for, parse_settings, succeeded
     from suite.planner import Budget, Recorder
 
+    _use_plugins(plugin)
     cell = cell_for(
         scene,
         planner,
@@ -229,12 +242,67 @@ def plan(
 
 
 @app.command()
+def check(
+    planner: Annotated[
+        str, typer.Argument(metavar="PLANNER", help="Name of the planner; see `list planners`.")
+    ],
+    settings: SettingsOption = None,
+    plugin: PluginOption = None,
+    limit_s: Annotated[
+        float, typer.Option(min=1.0, help="Seconds after which a rule that hangs is ended.")
+    ] = 30.0,
+    style: TextStyle = TextFormat.TEXT,
+) -> None:
+    """Check that a planner keeps the plugin contract, rule by rule.
+
+    Exit code 0 if it does, 1 if a rule is broken; what to do about it stands with each rule.
+
+    Example: kbga-bench check kbga --set population_size=20
+    """
+    from suite.conformance.report import as_data, as_text, broken
+    from suite.harness.check import check as apply_rules
+    from suite.harness.single import parse_settings
+
+    _use_plugins(plugin)
+    results = apply_rules(planner, parse_settings(settings or []), limit_s)
+    if style is TextFormat.JSON:
+        _print_json(as_data(planner, results))
+    else:
+        typer.echo(as_text(planner, results))
+    raise typer.Exit(1 if broken(results) else 0)
+
+
+@app.command()
+def new_planner(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Of the planner and its package: my-planner.")
+    ],
+    output: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Where to; default: a folder of that name.")
+    ] = None,
+) -> None:
+    """Write a planner to start from: a package with a module, its metadata and a test.
+
+    It keeps the contract as it is; see `check`.
+
+    Example: kbga-bench new-planner my-planner --output my-planner
+    """
+    from suite.new_planner import write_new_planner
+
+    files = write_new_planner(name, output)
+    for file in files:
+        typer.echo(file)
+    typer.echo(f"Try it: kbga-bench check {name} --plugin {files[0]}")
+
+
+@app.command()
 def simulate(
     scene: SceneArgument,
     planner: PlannerOption,
     seed: SeedOption = 0,
     query: QueryOption = None,
     settings: SettingsOption = None,
+    plugin: PluginOption = None,
     cold: Annotated[
         bool, typer.Option("--cold", help="Plan afresh at every update, whatever the planner can.")
     ] = False,
@@ -284,6 +352,7 @@ def simulate(
     )
     from suite.planner import Budget
 
+    _use_plugins(plugin)
     if plot is not None:
         from suite.report.figures import check_figure_file
 
@@ -350,6 +419,7 @@ def run(
         list[Path] | None,
         typer.Option(metavar="STORE", help="First take in the rows of another store; repeatable."),
     ] = None,
+    plugin: PluginOption = None,
 ) -> None:
     """Run what a store still lacks of a matrix, each run in a process of its own.
 
@@ -363,6 +433,7 @@ def run(
     from suite.harness.run import Which, run_matrix
     from suite.store import open_store
 
+    _use_plugins(plugin)
     if force and only_failed:
         raise typer.BadParameter("Give one of --force and --only-failed.", param_hint="--force")
     which = Which.ALL if force else Which.FAILED if only_failed else Which.MISSING
@@ -592,6 +663,12 @@ def main() -> None:
     except KbgaBenchError as error:
         typer.echo(f"kbga-bench: error: {_one_line(error)}", err=True)
         sys.exit(2)
+
+
+def _use_plugins(references: list[str] | None) -> None:
+    from suite.plugin_file import name_plugins
+
+    name_plugins(references or [])
 
 
 def _one_line(text: object) -> str:

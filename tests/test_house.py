@@ -13,10 +13,10 @@ PACKAGES = ("suite", "kbga", "baselines")
 FLOORS = (
     {"compiled", "errors", "geometry", "quiet"},
     {"dynamics", "scene", "scene_file", "exact"},
-    {"planner", "plugins"},
+    {"planner", "plugin_class", "plugin_file", "plugins"},
     {"scenes", "record", "referee"},
     {"conformance", "merge", "store"},
-    {"harness", "dynamic", "report", "paper", "listing"},
+    {"harness", "dynamic", "report", "paper", "listing", "new_planner"},
     {"cli"},
 )
 LONGEST_FILE = 700

@@ -519,3 +519,19 @@ class EatsInWarmUp(_Base):
 
     def warm_up(self):
         _eat()
+
+
+class WrongSignature(_Base):
+    name = "wrong-signature"
+
+    def plan(self, scene, query):
+        return Plan(PlanStatus.EXHAUSTED)
+
+
+class NewerInterface(_Base):
+    name = "newer-interface"
+    interface = 2
+
+
+class NoPlan(Planner):
+    name = "no-plan"
