@@ -75,6 +75,17 @@ def start_server(warmth: Warmth) -> None:
         multiprocessing.forkserver.ensure_running()
 
 
+def stop_server() -> None:
+    """End the fork server, when no run is in flight: the next run starts another, newly warmed."""
+    server = multiprocessing.forkserver._forkserver
+    with _BOOKKEEPING:
+        pid = vars(server).get("_forkserver_pid")
+        if pid is not None:
+            # It may be in the middle of its warming, which can take minutes.
+            _kill(pid)
+        server._stop()  # type: ignore[attr-defined]
+
+
 def kill_running() -> None:
     """Kill all runs of this process that are in flight; their callers get CRASHED records."""
     for pid in list(_running):
