@@ -7,7 +7,7 @@
 import os
 import time
 import uuid
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from concurrent.futures import (
     BrokenExecutor,
     CancelledError,
@@ -67,8 +67,17 @@ class DaskExecutor(Executor):
         return future
 
     def slots(self) -> int:
-        """Threads of all workers that are there now; at least 1."""
-        return max(1, sum(self._client.nthreads().values()))
+        """Threads of all workers that are there now; at least 1.
+
+        Raises
+        ------
+        HarnessError
+            If the scheduler is gone.
+        """
+        try:
+            return max(1, sum(self._client.nthreads().values()))
+        except (OSError, RuntimeError) as error:
+            raise _lost(error) from error
 
     def machines(self, session: Session) -> list[dict[str, Any]]:
         """What the machines of the workers are, each once, as provenance.
@@ -97,8 +106,13 @@ class DaskExecutor(Executor):
         Returns
         -------
         int
-            How many go on in spite of it, because their workers serve others too or don't answer:
-            they end by themselves or at their limits.
+            How many go on in spite of it, because their workers serve others too: they end by
+            themselves or at their limits.
+
+        Raises
+        ------
+        OSError, RuntimeError
+            If the scheduler is gone: nobody knows what goes on.
         """
         deadline = time.monotonic() + END_S
         while True:
@@ -194,14 +208,18 @@ class Crew:
             "workers": self.executor.machines(self.session),
         }
 
-    def abandon(self, futures: Iterable[Future[RunRecord]]) -> int:
+    def abandon(self, futures: Collection[Future[RunRecord]]) -> int:
         """Kill runs in flight, and say how many could not be: they end at their limits.
 
         Their records are dropped: the next session runs them again.
         """
         started = [future for future in futures if not future.cancel()]
         if self.session is not None and isinstance(self.executor, DaskExecutor):
-            return self.executor.end(self.session)
+            try:
+                return self.executor.end(self.session)
+            except (OSError, RuntimeError):
+                # A scheduler that is gone; its workers leave too, and their runs with them.
+                return len(futures)
         deadline = time.monotonic() + ABANDON_S
         while started and (self.session is None or time.monotonic() < deadline):
             # Again and again: a thread may have been about to start its process.
@@ -239,16 +257,20 @@ def record_of(future: "Future[RunRecord]", cell: Cell) -> RunRecord:
     try:
         return future.result()
     except (CancelledError, BrokenExecutor) as error:
-        raise HarnessError(
-            f"the executor was lost ({_one_line(error) or type(error).__name__}). All finished "
-            "runs are kept; to go on, start the cluster and give the same command again."
-        ) from error
+        raise _lost(error) from error
     except Exception as error:
         # Of distributed, which is imported only where it is used.
         if type(error).__name__ != "KilledWorker":
             raise
         reason = f"several workers died while they ran it: {_one_line(error)}"
         return RunRecord(cell, PlanStatus.CRASHED, reason)
+
+
+def _lost(error: BaseException) -> HarnessError:
+    return HarnessError(
+        f"the executor was lost ({_one_line(error) or type(error).__name__}). All finished runs "
+        "are kept; to go on, start it again and give the same command again."
+    )
 
 
 def _one_line(error: BaseException) -> str:
