@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import psutil
@@ -196,3 +196,9 @@ def test_a_new_session_finds_scenes_as_they_are_now(hostile, wall_file, matrix_f
             runs, _ = run(load_matrix(file), tmp_path / "s.db", executor=pool)
     assert runs["status"].tolist() == ["solved", "solved"]
     assert runs["cost"].is_unique
+
+
+def test_an_executor_whose_workers_are_processes_will_do(matrix_file, tmp_path):
+    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
+        runs, _ = run(load_matrix(matrix_file("wanderer")), tmp_path / "s.db", executor=pool)
+    assert runs["status"].tolist() == ["solved", "solved"]
