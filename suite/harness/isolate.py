@@ -237,7 +237,8 @@ def _main_module() -> tuple[str | None, str | None]:
 @contextlib.contextmanager
 def _server_environment(warmth: Warmth) -> Iterator[None]:
     """The settings that a fork server started now inherits; variables are put back afterwards."""
-    _CONTEXT.set_forkserver_preload([Warmth.__module__])
+    # The warm-up comes last: it leaves alone, for good, what is loaded by then.
+    _CONTEXT.set_forkserver_preload([run_in_child.__module__, Warmth.__module__])
     wanted = replace(warmth, main=_main_module()).environment()
     before = {name: os.environ.get(name) for name in wanted}
     os.environ.update(wanted)

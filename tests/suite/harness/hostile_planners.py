@@ -5,10 +5,12 @@ The fixture ``hostile`` makes a distribution of them, with metadata like any ins
 """
 
 import ctypes
+import gc
 import os
 import signal
 import sys
 import time
+import types
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,6 +68,18 @@ class Careless(_Base):
         by = query.start + np.random.random(2)
         path = np.array([query.start, by, query.start, *self.path(scene, query)[1:]])
         return Plan(PlanStatus.SOLVED, path)
+
+
+class CountsLateImports(_Base):
+    """Says how many modules of the suite were loaded after the fork server was warmed."""
+
+    name = "counts-late-imports"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        # The server takes what it has loaded out of the collector's sight.
+        seen = [o for o in gc.get_objects() if isinstance(o, types.ModuleType)]
+        late = sum(module.__name__.startswith("suite.") for module in seen)
+        return Plan(PlanStatus.SOLVED, self.path(scene, query), details={"late": late})
 
 
 class Sleeper(_Base):
