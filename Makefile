@@ -7,7 +7,7 @@ STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
 
-.PHONY: setup bench test test-slow torture lint perf clean
+.PHONY: setup bench test test-slow torture lint perf harness clean
 
 setup: $(STAMP)
 
@@ -45,6 +45,10 @@ perf: setup
 	$(BIN)/python -m pytest -q tests/perf --benchmark-only --benchmark-json=out/performance.json \
 		--benchmark-columns=median,max,rounds --benchmark-sort=name
 	$(BIN)/python -m tests.perf.performance_table out/performance.json results/performance
+
+# What the harness itself costs. On a machine that does nothing else.
+harness: setup
+	$(BIN)/python -m tests.perf.harness results/harness $(ARGS)
 
 clean:
 	rm -rf .venv out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

@@ -99,6 +99,15 @@ def available_planners() -> list[PluginInfo]:
     return [_describe(name, points) for name, points in sorted(_declared().items())]
 
 
+def planner_version(name: str) -> str | None:
+    """Version of the distribution that declares a planner; None if there is no such planner.
+
+    Nothing is imported; several versions, with commas, if the name is ambiguous.
+    """
+    points = _declared().get(name)
+    return None if points is None else ", ".join(_distribution(point)[1] for point in points)
+
+
 def make_settings(planner_class: type[Planner], mapping: Mapping[str, Any]) -> Any:
     """Build a planner's frozen settings from what a user wrote.
 

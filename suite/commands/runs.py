@@ -5,6 +5,8 @@ longer to import than ``list`` takes to answer.
 """
 
 import sys
+from contextlib import nullcontext
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -20,6 +22,13 @@ from suite.commands.options import (
 from suite.commands.output import print_json
 
 
+class Where(StrEnum):
+    """Where runs are run; see :mod:`suite.harness.executors`."""
+
+    LOCAL = "local"
+    DASK = "dask"
+
+
 def run(
     matrix: Annotated[
         str, typer.Argument(metavar="MATRIX", help="Name in the catalogue, or path of a file.")
@@ -27,6 +36,12 @@ def run(
     store: Annotated[Path, typer.Option(metavar="FILE", help="Result store; made if missing.")],
     jobs: Annotated[
         int | None, typer.Option(min=1, help="Runs at a time; default: one per physical core.")
+    ] = None,
+    executor: Annotated[
+        Where, typer.Option(help="Where: on this machine, or on the workers of a dask cluster.")
+    ] = Where.LOCAL,
+    address: Annotated[
+        str | None, typer.Option(metavar="URL", help="Of the dask scheduler: tcp://host:port.")
     ] = None,
     quick: Annotated[bool, typer.Option("--quick", help="Only the first two seeds.")] = False,
     force: Annotated[
@@ -50,6 +65,8 @@ def run(
     if all is done, 1 if rows of other stores are in conflict, 130 after Ctrl-C.
 
     Example: kbga-bench run paper-static --store out/paper.db --jobs 2
+
+    Example: kbga-bench run paper-static --store out/paper.db --executor dask --address tcp://n1:8786
     """
     from suite.harness.display import Display
     from suite.harness.matrix import load_matrix
@@ -57,6 +74,10 @@ def run(
     from suite.store import open_store
 
     use_plugins(plugin)
+    if (executor is Where.DASK) != (address is not None):
+        raise typer.BadParameter(
+            "Give --executor dask and --address together.", param_hint="--address"
+        )
     if force and only_failed:
         raise typer.BadParameter("Give one of --force and --only-failed.", param_hint="--force")
     which = Which.ALL if force else Which.FAILED if only_failed else Which.MISSING
@@ -66,21 +87,38 @@ def run(
 
         typer.echo(forecast_matrix(wanted, store, jobs=jobs, quick=quick, which=which).as_text())
         return
-    with open_store(store) as opened:
+    with _executor(address) as cluster, open_store(store) as opened:
         clean = _merge_into(opened, merge or [])
         try:
             with Display(wanted.name) as display:
                 end = run_matrix(
-                    wanted, opened, jobs=jobs, quick=quick, which=which, on_progress=display
+                    wanted,
+                    opened,
+                    jobs=jobs,
+                    quick=quick,
+                    which=which,
+                    executor=cluster,
+                    on_progress=display,
                 )
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as interrupt:
             typer.echo(
                 "Stopped. All finished runs are kept; to go on, give the same command again.",
                 err=True,
             )
+            for note in getattr(interrupt, "__notes__", ()):
+                typer.echo(note, err=True)
             raise typer.Exit(130) from None
     typer.echo(end.summary())
     raise typer.Exit(0 if clean else 1)
+
+
+def _executor(address: str | None) -> Any:
+    """A cluster's executor; None, if no address is given, for threads of this process."""
+    if address is None:
+        return nullcontext()
+    from suite.harness.executors import connect
+
+    return connect(address)
 
 
 def merge(

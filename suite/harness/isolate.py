@@ -104,6 +104,17 @@ def start_server(warmth: Warmth) -> None:
         multiprocessing.forkserver.ensure_running()
 
 
+def stop_server() -> None:
+    """End the fork server, when no run is in flight: the next run starts another, newly warmed."""
+    server = multiprocessing.forkserver._forkserver
+    with _BOOKKEEPING:
+        pid = _server_pid()
+        if pid is not None:
+            # It may be in the middle of its warming, which can take minutes.
+            kill_family(pid)
+        server._stop()  # type: ignore[attr-defined]
+
+
 def kill_running() -> None:
     """Kill all runs of this process that are in flight; their callers get CRASHED records."""
     _fleet.stops += 1
@@ -261,7 +272,8 @@ def _main_module() -> tuple[str | None, str | None]:
 @contextlib.contextmanager
 def _server_environment(warmth: Warmth) -> Iterator[None]:
     """The settings that a fork server started now inherits; variables are put back afterwards."""
-    _CONTEXT.set_forkserver_preload([Warmth.__module__])
+    # The warm-up comes last: it leaves alone, for good, what is loaded by then.
+    _CONTEXT.set_forkserver_preload([run_in_child.__module__, Warmth.__module__])
     wanted = replace(warmth, main=_main_module()).environment()
     before = {name: os.environ.get(name) for name in wanted}
     os.environ.update(wanted)
