@@ -124,9 +124,16 @@ def test_an_interruption_ends_the_runs_on_the_workers(cluster, matrix_file, tmp_
 
 def family(worker):
     """What descends from a worker and still runs."""
-    found = worker.children(recursive=True)
-    servers = [p for p in found if "forkserver" in " ".join(p.cmdline())]
-    return [p for p in servers if p.status() != psutil.STATUS_ZOMBIE]
+    return [p for p in worker.children(recursive=True) if is_of_the_server(p)]
+
+
+def is_of_the_server(process):
+    try:
+        is_dead = process.status() == psutil.STATUS_ZOMBIE
+        return not is_dead and "forkserver" in " ".join(process.cmdline())
+    except psutil.Error:
+        # It ended between the two questions.
+        return False
 
 
 def test_a_scheduler_that_is_not_there_is_an_error_before_anything_is_written(
