@@ -4,7 +4,6 @@
 ``CLUSTERS.md`` beside this file.
 """
 
-import os
 import time
 import uuid
 from collections.abc import Callable, Collection, Iterator
@@ -21,6 +20,7 @@ from dataclasses import dataclass
 from typing import Any, ParamSpec, TypeVar
 
 from suite.errors import HarnessError
+from suite.harness.cores import honest_jobs
 from suite.harness.isolate import kill_running, run_isolated
 from suite.harness.machine import package_version
 from suite.harness.matrix import Limits
@@ -191,7 +191,7 @@ class Crew:
         """Runs at a time."""
         if self.jobs is None and isinstance(self.executor, DaskExecutor):
             return self.executor.slots()
-        return self.jobs or os.cpu_count() or 1
+        return self.jobs or honest_jobs()
 
     def start(self, cell: Cell, limits: Limits, warmth: Warmth) -> Future[RunRecord]:
         """Have a cell run."""
@@ -236,12 +236,12 @@ def crew(given: Executor | None, jobs: int | None) -> Iterator[Crew]:
     ----------
     given : Executor, optional
     jobs : int, optional
-        Runs at a time; default: as many as there are processors.
+        Runs at a time; default: what leaves their timing honest.
     """
     if given is not None:
         yield Crew(given, jobs, new_session())
         return
-    jobs = jobs or os.cpu_count() or 1
+    jobs = jobs or honest_jobs()
     with ThreadPoolExecutor(jobs, thread_name_prefix="run") as own:
         yield Crew(own, jobs, None)
 

@@ -120,7 +120,8 @@ def run_matrix(
     store : Store
         Open for writing.
     jobs : int, optional
-        Runs at a time; default: the number of processors, of a dask cluster that of its threads.
+        Runs at a time; default: what leaves their timing honest; of a dask cluster the number of
+        its threads.
     quick : bool
         Only the first two seeds.
     which : Which
@@ -217,7 +218,9 @@ def warmth_for(cells: Iterable[Cell], limits: Limits) -> Warmth:
     """What the fork server should have ready for these cells."""
     planners = {(c.planner, canonical_json(c.settings)) for c in cells}
     queries = {(c.scene_source, c.query) for c in cells}
-    return Warmth(tuple(sorted(planners)), tuple(sorted(queries)), limits.warm_up_s)
+    return Warmth(
+        tuple(sorted(planners)), tuple(sorted(queries)), limits.warm_up_s, limits.memory_bytes
+    )
 
 
 def _left_in_words(left: int) -> str:

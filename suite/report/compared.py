@@ -1,7 +1,7 @@
 """Runs of variants compared with those of one of them: the machinery of all studies."""
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import pandas as pd
@@ -18,14 +18,17 @@ PENALTIES_NOTE = (
 )
 RATIO_NOTE = "ratio: of the cpu time to that of {reference}."
 
+SIDE_BY_SIDE = 12
+"""Scenes that a table has room for: of more, there are only the rows."""
+
 _BUDGET = ["budget_wall_s", "budget_generations", "budget_checks"]
 
 
-def settings_of(runs: pd.DataFrame) -> "pd.Series[Any]":
-    """The settings of each run, as a dict."""
+def settings_of(runs: pd.DataFrame, column: str = "settings") -> "pd.Series[Any]":
+    """The settings of each run, or of its world, as a dict."""
     # Few different texts stand in many rows.
-    parsed = {text: json.loads(text) for text in runs["settings"].unique()}
-    return runs["settings"].map(parsed)
+    parsed = {text: json.loads(text) for text in runs[column].unique()}
+    return runs[column].map(parsed)
 
 
 def families(
@@ -153,15 +156,21 @@ def _of_reference(
     return there.groupby([frame[name] for name in within]).transform("first")
 
 
-def at_a_glance(frame: pd.DataFrame, rows: Sequence[str]) -> pd.DataFrame:
-    """The mean gap of each row of a comparison, with the scenes side by side.
+def at_a_glance(
+    frame: pd.DataFrame,
+    rows: Sequence[str],
+    cell: Callable[[Mapping[Any, Any]], str] | None = None,
+) -> pd.DataFrame:
+    """A comparison with the scenes side by side.
 
     Parameters
     ----------
     frame : DataFrame
-        Of :func:`compare`.
+        Of :func:`compare`, or any with a column ``scene``.
     rows : sequence of str
         Its columns that name a row here.
+    cell : callable, optional
+        What to write of a row of the frame; by default its mean gap, see :func:`glance`.
 
     Returns
     -------
@@ -173,7 +182,7 @@ def at_a_glance(frame: pd.DataFrame, rows: Sequence[str]) -> pd.DataFrame:
     lines: dict[tuple[Any, ...], dict[str, str]] = {}
     for row in frame.to_dict("records"):
         line = lines.setdefault(tuple(row[name] for name in rows), {})
-        line.setdefault(str(row["scene"]), glance(row))
+        line.setdefault(str(row["scene"]), (cell or glance)(row))
     return pd.DataFrame(
         [
             dict(zip(rows, name, strict=True)) | {place: line.get(place, "") for place in places}
