@@ -1,7 +1,7 @@
 """Runs of variants compared with those of one of them: the machinery of all studies."""
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import pandas as pd
@@ -153,15 +153,21 @@ def _of_reference(
     return there.groupby([frame[name] for name in within]).transform("first")
 
 
-def at_a_glance(frame: pd.DataFrame, rows: Sequence[str]) -> pd.DataFrame:
-    """The mean gap of each row of a comparison, with the scenes side by side.
+def at_a_glance(
+    frame: pd.DataFrame,
+    rows: Sequence[str],
+    cell: Callable[[Mapping[Any, Any]], str] | None = None,
+) -> pd.DataFrame:
+    """A comparison with the scenes side by side.
 
     Parameters
     ----------
     frame : DataFrame
-        Of :func:`compare`.
+        Of :func:`compare`, or any with a column ``scene``.
     rows : sequence of str
         Its columns that name a row here.
+    cell : callable, optional
+        What to write of a row of the frame; by default its mean gap, see :func:`glance`.
 
     Returns
     -------
@@ -173,7 +179,7 @@ def at_a_glance(frame: pd.DataFrame, rows: Sequence[str]) -> pd.DataFrame:
     lines: dict[tuple[Any, ...], dict[str, str]] = {}
     for row in frame.to_dict("records"):
         line = lines.setdefault(tuple(row[name] for name in rows), {})
-        line.setdefault(str(row["scene"]), glance(row))
+        line.setdefault(str(row["scene"]), (cell or glance)(row))
     return pd.DataFrame(
         [
             dict(zip(rows, name, strict=True)) | {place: line.get(place, "") for place in places}

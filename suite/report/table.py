@@ -41,12 +41,16 @@ class Table:
     frame : DataFrame with one level of columns; the index carries nothing. Columns whose name
         ends in ``(s)`` or ``(ms)`` hold seconds or milliseconds, in ``(%)`` per cent.
     note : what a reader must know to read it rightly.
+    infinite : what is printed for an infinite number; CSV holds ``inf``.
+    detail : whether it holds the rows behind another table, too many to be printed among others.
     """
 
     name: str
     title: str
     frame: pd.DataFrame
     note: str = ""
+    infinite: str = "infinite"
+    detail: bool = False
 
 
 def render(table: Table, style: Format) -> str:
@@ -82,7 +86,7 @@ def _markdown(table: Table) -> str:
 def _grid(table: Table, layout: str, headers: list[str]) -> str:
     frame = table.frame
     return tabulate(
-        _as_texts(frame).to_numpy().tolist(),
+        _as_texts(table).to_numpy().tolist(),
         headers=headers,
         tablefmt=layout,
         disable_numparse=True,
@@ -94,7 +98,7 @@ def _grid(table: Table, layout: str, headers: list[str]) -> str:
 
 def _latex(table: Table) -> str:
     columns = "".join("r" if _is_numeric(table.frame[c]) else "l" for c in table.frame.columns)
-    texts = _as_texts(table.frame)
+    texts = _as_texts(table)
     body = texts.style.hide(axis="index").format(escape="latex")
     body = body.format_index(escape="latex", axis=1)
     return str(
@@ -136,12 +140,19 @@ def _is_missing(value: Any) -> bool:
     return value is None or value is pd.NA or (isinstance(value, float) and math.isnan(value))
 
 
-def _as_texts(frame: pd.DataFrame) -> pd.DataFrame:
+def _as_texts(table: Table) -> pd.DataFrame:
     columns = {}
-    for name in frame.columns:
+    for name in table.frame.columns:
         digits = _digits(str(name))
-        columns[name] = [_as_text(value, digits) for value in frame[name]]
+        columns[name] = [
+            table.infinite if _is_infinite(value) else _as_text(value, digits)
+            for value in table.frame[name]
+        ]
     return pd.DataFrame(columns)
+
+
+def _is_infinite(value: Any) -> bool:
+    return isinstance(value, float) and math.isinf(value)
 
 
 def _digits(column: str) -> int | None:
@@ -150,6 +161,8 @@ def _digits(column: str) -> int | None:
         return AS_PRINTED
     if column.startswith("ours") and "cost" not in column and "gen" not in column:
         return None
+    if column in ("p", "Holm's p"):
+        return 4
     return 3 if column.endswith("s)") else 1 if column.startswith(("gen", "checks")) else 2
 
 

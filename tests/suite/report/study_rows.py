@@ -24,8 +24,8 @@ def run(variant: str, settings: dict[str, Any], cost: float | None, **changes: A
         outcome = {"status": PlanStatus.EXHAUSTED, "claimed_cost": 1000.0, "path": None} | nothing
     else:
         outcome = {"cost": cost, "claimed_cost": cost, "gap": cost / OPTIMUM - 1.0}
-    started = {"started_at": "2026-01-01T00:00:00"}
-    return make_record(cell, optimum=OPTIMUM, **started | outcome | changes)
+    always = {"optimum": OPTIMUM, "started_at": "2026-01-01T00:00:00"}
+    return make_record(cell, **always | outcome | changes)
 
 
 def runs_of(*records: RunRecord) -> pd.DataFrame:

@@ -1,0 +1,186 @@
+"""Pictures of how runs end: gaps as boxes, and gaps against times."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from suite.report.anytime import Array, Steps, final_gaps, groups_of
+from suite.report.panels import (
+    LEAST_GAP,
+    PLANNERS_AT_MOST,
+    SMALL,
+    Panels,
+    legend,
+    logarithmic_gaps,
+    look,
+    numbered,
+    plain_number,
+    scene_panels,
+    title,
+)
+
+EXACT = "visibility-graph"
+"""The exact solver's plugin. Its time is the limit: who needs longer, needs a reason."""
+
+MANY = 200
+"""Runs of a planner in a panel from which they are drawn paler."""
+
+ABOVE = 6.0
+"""How far the axis goes on above the largest gap, for failed runs; as far again for words."""
+
+SHARE_TEXT: dict[str, Any] = {"ha": "center", "va": "top", "rotation": 90, "fontsize": SMALL - 1}
+
+NO_PATH_TEXT: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": SMALL - 1}
+
+BOXES_NOTE = (
+    "Box: quartiles and median of the runs that found a path; whiskers: the farthest runs within "
+    "1.5 boxes; circles: runs beyond. Above: how many of how many runs found a path, where not all "
+    "did. One that failed is in no box."
+)
+SCATTER_NOTE = (
+    "A mark is a run: when it first had its final path, and how good that is. Above the line: runs "
+    "without a path, and how long they tried."
+)
+LIMIT_NOTE = (
+    " Dashed: the median time of the exact solver, which finds the shortest path: what is right of "
+    "it takes longer and finds none that is shorter."
+)
+
+
+def comparison_figures(steps: Steps) -> dict[str, Figure]:
+    """The figures that these runs can answer, by the name of the file.
+
+    Parameters
+    ----------
+    steps : Steps
+
+    Returns
+    -------
+    dict from str to Figure
+        None without an accepted path in a scene with an optimum, or with too many planners.
+    """
+    planners = steps.runs["variant"].nunique()
+    if planners > PLANNERS_AT_MOST or np.isnan(steps.optimum[steps.run]).all():
+        return {}
+    return {"gap-boxes": plot_boxes(steps), "gap-time": plot_scatter(steps)}
+
+
+def plot_boxes(steps: Steps) -> Figure:
+    """Draw boxes of the gaps of each planner, scene by scene.
+
+    Parameters
+    ----------
+    steps : Steps
+        With an accepted path in a scene with an optimum.
+    """
+    gap = 100.0 * final_gaps(steps)
+    groups = groups_of(steps, ~np.isnan(steps.optimum))
+    scenes = list(dict.fromkeys(scene for scene, _ in groups))
+    planners = numbered(steps.runs["variant"])
+    panels = scene_panels(scenes)
+    for (scene, planner), rows in groups.items():
+        if scene in panels.axes:
+            _draw_box(panels.axes[scene], planners[planner], gap[rows])
+    first = next(iter(panels.axes.values()))
+    first.set_xlim(-0.7, len(planners) - 0.3)
+    first.set_xticks([])
+    logarithmic_gaps(first, gap)
+    first.set_ylim(top=ABOVE**2 * first.get_ylim()[1])
+    title(panels, "How near the optimum the runs end", "", len(scenes))
+    legend(panels.figure, planners, BOXES_NOTE, only_markers=True)
+    return panels.figure
+
+
+def _draw_box(axes: Axes, i: int, gap: Array) -> None:
+    """Draw the box of one planner's gaps, per cent, and its marker on the median."""
+    lines = look(i)
+    found = np.maximum(gap[np.isfinite(gap)], LEAST_GAP)
+    if len(found) < len(gap):
+        # Where the axis goes on above the largest gap, whatever that is.
+        above = axes.get_xaxis_transform()
+        axes.plot(
+            i, 0.96, marker=lines["marker"], color=lines["color"], markersize=4, transform=above
+        )
+        share = f"{len(found)}/{len(gap)}"
+        axes.text(i, 0.93, share, transform=above, **SHARE_TEXT)
+    if not len(found):
+        return
+    thin = {"linewidth": 0.8}
+    axes.boxplot(
+        [found],
+        positions=[i],
+        widths=0.6,
+        patch_artist=True,
+        boxprops={"facecolor": lines["color"], "alpha": 0.35, **thin},
+        medianprops={"color": "black", "linewidth": 1.4},
+        whiskerprops=thin,
+        capprops=thin,
+        flierprops={"marker": "o", "markersize": 2.5, "markeredgewidth": 0.5},
+        manage_ticks=False,
+    )
+    marker = {"color": lines["color"], "marker": lines["marker"]}
+    axes.plot(i, np.median(found), markeredgecolor="black", markeredgewidth=0.5, zorder=4, **marker)
+
+
+def plot_scatter(steps: Steps) -> Figure:
+    """Draw gap against time of each run, scene by scene, with the exact solver's time as the limit.
+
+    Parameters
+    ----------
+    steps : Steps
+        With an accepted path in a scene with an optimum.
+    """
+    runs = steps.runs
+    gap = 100.0 * final_gaps(steps)
+    time = 1e3 * runs["time_to_best_s"].fillna(runs["wall_s"]).to_numpy()
+    groups = groups_of(steps, ~np.isnan(steps.optimum))
+    scenes = list(dict.fromkeys(scene for scene, _ in groups))
+    planners = numbered(steps.runs["variant"])
+    panels = scene_panels(scenes)
+    first = next(iter(panels.axes.values()))
+    logarithmic_gaps(first, gap)
+    edge = first.get_ylim()[1]
+    first.set_ylim(top=ABOVE * edge)
+    first.set_xscale("log")
+    no_path = edge * ABOVE**0.5
+    for axes in panels.axes.values():
+        axes.axhline(edge, color="#808080", linewidth=0.8)
+        axes.text(0.98, no_path, "no path", **NO_PATH_TEXT, transform=axes.get_yaxis_transform())
+        axes.xaxis.set_major_formatter(plain_number)
+    for (scene, planner), rows in groups.items():
+        if scene in panels.axes:
+            height = np.where(np.isfinite(gap[rows]), np.maximum(gap[rows], LEAST_GAP), no_path)
+            _draw_runs(panels.axes[scene], planners[planner], time[rows], height)
+    limit = _draw_limits(panels, runs, time)
+    title(panels, "Time and gap of the runs", "wall time to the final path (ms)", len(scenes))
+    legend(panels.figure, planners, SCATTER_NOTE + limit, only_markers=True)
+    return panels.figure
+
+
+def _draw_runs(axes: Axes, i: int, time: Array, height: Array) -> None:
+    lines = look(i)
+    axes.plot(
+        time,
+        height,
+        linestyle="none",
+        color=lines["color"],
+        marker=lines["marker"],
+        markersize=4.5,
+        markeredgewidth=0,
+        alpha=0.6 if len(time) < MANY else 0.15,
+        # Points of hundreds of thousands of runs would make a vector file that nothing opens.
+        rasterized=len(time) >= MANY,
+    )
+
+
+def _draw_limits(panels: Panels, runs: pd.DataFrame, time: Array) -> str:
+    """Draw the exact solver's median time in each scene; what is to be said of it."""
+    exact = (runs["planner"] == EXACT).to_numpy() & np.isfinite(time)
+    for scene, axes in panels.axes.items():
+        mine = time[exact & (runs["place"] == scene).to_numpy()]
+        if len(mine):
+            axes.axvline(float(np.median(mine)), color="black", linestyle="--", linewidth=1.0)
+    return LIMIT_NOTE if exact.any() else ""

@@ -1,0 +1,185 @@
+"""The critical-difference diagram: mean ranks of the planners, and which do not differ.
+
+References
+----------
+Demsar (2006), Statistical comparisons of classifiers over multiple data sets, Figure 1.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from suite.report.anytime import Steps
+from suite.report.panels import legend
+from suite.report.ranking import Ranking, rankings, scene_scores
+
+PLANNERS_AT_MOST = 30
+"""More names can't be read."""
+
+WIDTH = 9.0
+"""Inches."""
+
+CHARACTER = 0.075
+"""Width of a character of a name, inches."""
+
+LINE = 0.27
+"""Height of a name, inches."""
+
+ABOVE = 0.95
+"""Height of the title and the bar of the critical difference, inches."""
+
+HOW_TO_READ = (
+    "Each planner stands at its mean rank over the scenes; farther left is better. Thick lines "
+    "join planners whose mean ranks differ by less than the critical difference (CD) of Nemenyi's "
+    "test at 5 %: these scenes do not tell them apart."
+)
+
+
+def rank_figures(steps: Steps) -> dict[str, Figure]:
+    """The critical-difference diagram of the rankings, by the name of its file.
+
+    Parameters
+    ----------
+    steps : Steps
+
+    Returns
+    -------
+    dict from str to Figure
+        None with fewer than three planners or two scenes: there is no test then.
+    """
+    found = [ranking for ranking in rankings(scene_scores(steps)) if _can_be_tested(ranking)]
+    return {"critical-difference": plot_ranks(found)} if found else {}
+
+
+def _can_be_tested(ranking: Ranking) -> bool:
+    scenes, planners = ranking.ranks.shape
+    return scenes >= 2 and 3 <= planners <= PLANNERS_AT_MOST
+
+
+def plot_ranks(found: Sequence[Ranking]) -> Figure:
+    """Draw a diagram for each ranking, one below the other.
+
+    Parameters
+    ----------
+    found : sequence of Ranking
+        Of three planners and two scenes at least.
+    """
+    bands = [_bars(ranking) for ranking in found]
+    heights = [
+        ABOVE + LINE * (_rows(len(r.mean)) + 0.4 * len(b))
+        for r, b in zip(found, bands, strict=True)
+    ]
+    figure, grid = plt.subplots(
+        len(found),
+        1,
+        figsize=(WIDTH, 1.0 + sum(heights)),
+        squeeze=False,
+        layout="constrained",
+        gridspec_kw={"height_ratios": heights},
+    )
+    for axes, ranking, bars in zip(grid.flat, found, bands, strict=True):
+        _draw(axes, ranking, bars)
+    figure.suptitle("Mean ranks, and the critical difference", fontsize=11)
+    legend(figure, {}, HOW_TO_READ)
+    return figure
+
+
+def joined(mean_ranks: Sequence[float], difference: float) -> list[tuple[int, int]]:
+    """Largest groups of planners whose mean ranks all differ by no more than a difference.
+
+    Parameters
+    ----------
+    mean_ranks : sequence of float
+        Rising.
+    difference : float
+
+    Returns
+    -------
+    list of (int, int)
+        First and last place of each group of two or more, none within another.
+
+    Examples
+    --------
+    >>> joined([1.0, 1.5, 2.5, 4.0], 1.1)
+    [(0, 1), (1, 2)]
+    """
+    groups: list[tuple[int, int]] = []
+    for first, lowest in enumerate(mean_ranks):
+        last = int(np.searchsorted(mean_ranks, lowest + difference, side="right")) - 1
+        if last > first and (not groups or last > groups[-1][1]):
+            groups.append((first, last))
+    return groups
+
+
+def _bars(ranking: Ranking) -> list[tuple[float, float]]:
+    """Mean ranks between which there is no difference."""
+    ranks = sorted(ranking.mean.tolist())
+    groups = joined(ranks, ranking.critical_difference)
+    return [(ranks[first], ranks[last]) for first, last in groups]
+
+
+def _rows(planners: int) -> int:
+    return -(-planners // 2)
+
+
+def _draw(axes: Axes, ranking: Ranking, bars: Sequence[tuple[float, float]]) -> None:
+    """Draw one diagram; y counts rows of names downwards from the axis of ranks."""
+    mean = ranking.mean.sort_values(kind="stable")
+    count = len(mean)
+    depth = 0.5 + 0.4 * len(bars)
+    # The names stand beside the axis, which is in the middle of what they leave.
+    beside = CHARACTER * (max(map(len, map(str, mean.index))) + 8)
+    rank = (count - 1) / max(WIDTH - 2 * beside, 1.0)
+    axes.set_xlim(1.0 - rank * beside, count + rank * beside)
+    axes.set_ylim(depth + _rows(count), -2.0)
+    axes.axis("off")
+    axes.set_title(f"{ranking.name} ({len(ranking.ranks)} scenes)", fontsize=10)
+    _draw_axis(axes, count)
+    _draw_difference(axes, ranking.critical_difference, count)
+    for i, (low, high) in enumerate(bars):
+        y = 0.4 + 0.4 * i
+        axes.plot([low - 0.04, high + 0.04], [y, y], color="black", linewidth=4)
+    _draw_names(axes, mean, depth)
+
+
+def _draw_axis(axes: Axes, count: int) -> None:
+    axes.plot([1, count], [0, 0], color="black", linewidth=1.0)
+    for rank in range(1, count + 1):
+        axes.plot([rank, rank], [0, -0.2], color="black", linewidth=1.0)
+        axes.text(rank, -0.3, str(rank), ha="center", va="bottom", fontsize=9)
+
+
+def _draw_difference(axes: Axes, difference: float, count: int) -> None:
+    # A difference that is longer than the axis says that there are too few scenes: it is written.
+    end = 1.0 + min(difference, count - 1.0)
+    axes.plot([1.0, end], [-1.25, -1.25], color="black", linewidth=1.6, marker="|", markersize=7)
+    text = f"CD = {difference:.2f}"
+    axes.text((1.0 + end) / 2, -1.4, text, ha="center", va="bottom", fontsize=9)
+
+
+def _draw_names(axes: Axes, mean: "pd.Series[Any]", depth: float) -> None:
+    """Write the better half on the left, the best one lowest, the other on the right."""
+    count = len(mean)
+    half = _rows(count)
+    step = 0.02 * count
+    for i, (planner, rank) in enumerate(mean.items()):
+        is_left = i < half
+        y = depth + (i if is_left else count - 1 - i) + 0.3
+        edge = 1.0 - 2 * step if is_left else count + 2 * step
+        axes.plot([rank, rank, edge], [0, y, y], color="#606060", linewidth=0.9)
+        name = f"{planner}  {rank:.2f}" if is_left else f"{rank:.2f}  {planner}"
+        side = "right" if is_left else "left"
+        axes.text(
+            edge + (-step if is_left else step),
+            y,
+            name,
+            ha=side,
+            va="center",
+            fontsize=9,
+            in_layout=False,
+        )

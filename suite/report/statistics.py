@@ -1,0 +1,299 @@
+"""Statistics of scores that are better the lower they are: pure functions over runs x tasks arrays.
+
+A task is a scene. A run that failed scores infinity, the worst there is; where a task has fewer
+runs than another, the column is filled up with nan. Randomness comes in as a Generator, so the
+same scores and the same seed give the same interval.
+
+References
+----------
+Agarwal, Schwarzer, Castro, Courville and Bellemare (2021), Deep reinforcement learning at the edge
+of the statistical precipice: interquartile mean, stratified bootstrap, probability of improvement.
+Holm (1979), A simple sequentially rejective multiple test procedure. Demsar (2006), Statistical
+comparisons of classifiers over multiple data sets: Friedman's and Nemenyi's tests.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+Array = NDArray[np.float64]
+
+REPETITIONS = 1000
+"""Resamples of a bootstrap."""
+
+LEVEL = 0.95
+"""Of an interval, and 1 less the level of a test."""
+
+AT_ONCE = 1_000_000
+"""Numbers that are drawn at once: bounds the memory, whatever the number of runs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """An estimate between the ends of its interval.
+
+    estimate, low, high : float; nan for the ends where a task has a single run.
+    """
+
+    estimate: float
+    low: float
+    high: float
+
+
+def interquartile_mean(scores: Array) -> Array:
+    """Mean of the middle half of the scores, along the last axis.
+
+    It is infinite if more than a quarter of the runs failed: then no number says how good the
+    others were and how many there were.
+
+    Parameters
+    ----------
+    scores : (..., n) float64
+
+    Returns
+    -------
+    (...) float64
+
+    Examples
+    --------
+    >>> float(interquartile_mean(np.array([1.0, 3.0, 5.0, np.inf])))
+    4.0
+    """
+    return np.asarray(stats.trim_mean(scores, 0.25, axis=-1))
+
+
+def bootstrap(
+    scores: Array,
+    statistic: Callable[[Array], Array],
+    rng: np.random.Generator,
+    *,
+    repetitions: int = REPETITIONS,
+    level: float = LEVEL,
+) -> Interval:
+    """Estimate a statistic of all runs, with its percentile interval of a stratified bootstrap.
+
+    Runs are resampled within each task: the tasks are given, the runs are a sample.
+
+    Parameters
+    ----------
+    scores : (runs, tasks) float64
+        nan where there is no run.
+    statistic : callable
+        From (..., n) float64 to (...) float64.
+    rng : numpy.random.Generator
+    repetitions : int
+    level : float, between 0 and 1
+
+    Returns
+    -------
+    Interval
+    """
+    strata = _strata(scores)
+    pooled = np.concatenate(strata)
+    estimate = float(statistic(pooled))
+    if min(map(len, strata)) < 2:
+        return Interval(estimate, np.nan, np.nan)
+    sizes = np.concatenate([np.full(len(stratum), len(stratum)) for stratum in strata])
+    starts = np.concatenate(
+        [
+            np.full(len(stratum), start)
+            for stratum, start in zip(strata, _starts(strata), strict=True)
+        ]
+    )
+    estimates = [
+        # Faster than integers below many bounds, and as even to 1 part in 10 ** 12.
+        statistic(pooled[starts + (sizes * rng.random((count, len(pooled)))).astype(np.int64)])
+        for count in _portions(repetitions, len(pooled))
+    ]
+    return _between(estimate, np.concatenate(estimates), level)
+
+
+def probability_better(a: Array, b: Array) -> float:
+    """Probability that a run of A scores lower than one of B; a tie counts half.
+
+    It is Mann and Whitney's U over the number of pairs, averaged over the tasks.
+
+    Parameters
+    ----------
+    a, b : (runs, tasks) float64
+        nan where there is no run; the same tasks.
+
+    Returns
+    -------
+    float, 0 to 1
+
+    Examples
+    --------
+    >>> probability_better(np.array([[1.0], [3.0]]), np.array([[2.0], [3.0]]))
+    0.625
+    """
+    tasks = [
+        _share_of_wins(np.bincount(i, minlength=n)[None], np.bincount(j, minlength=n)[None])
+        for i, j, n in _coded(a, b)
+    ]
+    return float(np.mean(tasks))
+
+
+def probability_interval(
+    a: Array,
+    b: Array,
+    rng: np.random.Generator,
+    *,
+    repetitions: int = REPETITIONS,
+    level: float = LEVEL,
+) -> Interval:
+    """The probability that A is better than B, with its interval of a stratified bootstrap.
+
+    Parameters
+    ----------
+    a, b : (runs, tasks) float64
+        nan where there is no run; the same tasks.
+    rng : numpy.random.Generator
+    repetitions : int
+    level : float, between 0 and 1
+
+    Returns
+    -------
+    Interval
+    """
+    estimate = probability_better(a, b)
+    if min(map(len, [*_strata(a), *_strata(b)])) < 2:
+        return Interval(estimate, np.nan, np.nan)
+    tasks = [
+        np.concatenate(
+            [
+                _share_of_wins(_resampled(i, n, rng, count), _resampled(j, n, rng, count))
+                for count in _portions(repetitions, len(i) + len(j))
+            ]
+        )
+        for i, j, n in _coded(a, b)
+    ]
+    return _between(estimate, np.mean(tasks, axis=0), level)
+
+
+def mann_whitney(a: Array, b: Array) -> float:
+    """Two-sided p-value that the scores of A and of B are from one distribution.
+
+    Parameters
+    ----------
+    a : (m,) float64
+    b : (n,) float64
+
+    Returns
+    -------
+    float
+        1 if all scores are equal.
+    """
+    pooled = np.concatenate([a, b])
+    if (pooled == pooled[0]).all():
+        return 1.0
+    return float(stats.mannwhitneyu(a, b, alternative="two-sided").pvalue)
+
+
+def holm(p_values: Array) -> Array:
+    """P-values corrected for their number, after Holm (1979).
+
+    Parameters
+    ----------
+    p_values : (n,) float64
+
+    Returns
+    -------
+    (n,) float64
+        In the same order, at most 1.
+
+    Examples
+    --------
+    >>> holm(np.array([0.01, 0.04, 0.03, 0.005])).round(3).tolist()
+    [0.03, 0.06, 0.06, 0.02]
+    """
+    order = np.argsort(p_values, kind="stable")
+    factors = np.arange(len(p_values), 0, -1)
+    corrected = np.empty(len(p_values))
+    # None is below a smaller one's: the procedure stops at the first that it does not reject.
+    corrected[order] = np.minimum(np.maximum.accumulate(factors * p_values[order]), 1.0)
+    return corrected
+
+
+def friedman(ranks: Array) -> tuple[float, float]:
+    """Friedman's chi-square, corrected for ties, and its p-value.
+
+    Parameters
+    ----------
+    ranks : (tasks, planners) float64
+
+    Returns
+    -------
+    tuple of float
+        nan with fewer than three planners or two tasks, or if all are tied in all tasks.
+    """
+    tasks, planners = ranks.shape
+    if planners < 3 or tasks < 2 or (ranks == ranks[:, :1]).all():
+        return np.nan, np.nan
+    found = stats.friedmanchisquare(*ranks.T)
+    return float(found.statistic), float(found.pvalue)
+
+
+def critical_difference(planners: int, tasks: int, level: float = LEVEL) -> float:
+    """How far apart mean ranks must be for two planners to differ, by Nemenyi's test.
+
+    Parameters
+    ----------
+    planners, tasks : int
+    level : float
+        1 less the probability that any two that are equal seem to differ.
+
+    Returns
+    -------
+    float
+    """
+    # Demsar (2006), section 3.2.2: Studentised range for infinite degrees of freedom, over sqrt(2).
+    quantile = float(stats.studentized_range.ppf(level, planners, np.inf)) / np.sqrt(2.0)
+    return float(quantile * np.sqrt(planners * (planners + 1) / (6.0 * tasks)))
+
+
+def _strata(scores: Array) -> list[Array]:
+    return [column[~np.isnan(column)] for column in scores.T]
+
+
+def _starts(strata: list[Array]) -> NDArray[np.int64]:
+    return np.cumsum([0, *map(len, strata[:-1])])
+
+
+def _portions(repetitions: int, size: int) -> Iterator[int]:
+    """Numbers of repetitions that are done at once."""
+    portion = max(1, AT_ONCE // size)
+    while repetitions > 0:
+        yield min(portion, repetitions)
+        repetitions -= portion
+
+
+def _coded(a: Array, b: Array) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], int]]:
+    """For each task, the places of the scores of A and of B among its distinct scores."""
+    for mine, other in zip(_strata(a), _strata(b), strict=True):
+        distinct, codes = np.unique(np.concatenate([mine, other]), return_inverse=True)
+        yield codes[: len(mine)], codes[len(mine) :], len(distinct)
+
+
+def _resampled(
+    codes: NDArray[np.int64], distinct: int, rng: np.random.Generator, count: int
+) -> NDArray[np.int64]:
+    """(count, distinct) int64: how often each score is in each resample."""
+    drawn = codes[rng.integers(len(codes), size=(count, len(codes)))]
+    drawn += distinct * np.arange(count)[:, None]
+    return np.bincount(drawn.ravel(), minlength=count * distinct).reshape(count, distinct)
+
+
+def _share_of_wins(a: NDArray[np.int64], b: NDArray[np.int64]) -> Array:
+    """Share of pairs in which A scores lower, ties half, of counts of the distinct scores."""
+    below = np.cumsum(a, axis=1) - 0.5 * a
+    return np.asarray((below * b).sum(axis=1) / (a.sum(axis=1) * b.sum(axis=1)))
+
+
+def _between(estimate: float, estimates: Array, level: float) -> Interval:
+    # Not interpolated: half way between a number and infinity is no estimate.
+    ends = np.quantile(estimates, [(1 - level) / 2, (1 + level) / 2], method="inverted_cdf")
+    return Interval(estimate, float(ends[0]), float(ends[1]))

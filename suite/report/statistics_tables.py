@@ -1,0 +1,186 @@
+"""How good the planners are over all scenes, and how surely they differ.
+
+Everything is computed from the gaps of the runs on the scenes that have an optimum and that all
+planners ran. A run without an accepted path has an infinite gap: in ranks and probabilities it is
+worse than any path, and an interquartile mean is given only where at most a quarter of all runs
+failed; no other number is put in its place.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from suite.report.anytime import Array, Steps, final_gaps
+from suite.report.compared import at_a_glance
+from suite.report.statistics import (
+    Interval,
+    bootstrap,
+    holm,
+    interquartile_mean,
+    mann_whitney,
+    probability_better,
+    probability_interval,
+)
+from suite.report.table import Table
+
+REFERENCE = "kbga"
+"""The planner that the others are compared with; the first one where it is missing."""
+
+IQM_NOTE = (
+    "IQM: mean of the middle half of the gaps of all runs, in which a failed run has an infinite "
+    "one; 'none' where more than a quarter failed."
+)
+INTERVAL_NOTE = (
+    "Low and high: 95 % intervals of a bootstrap that resamples the runs within each scene; empty "
+    "where a scene has one run."
+)
+PAIR_NOTE = (
+    "{reference} better: probability that a run of {reference} ends with a smaller gap than one of "
+    "this planner on the same scene, a tie counting half, a failed run being worse than any path"
+)
+
+
+def scores_by_planner(steps: Steps) -> tuple[list[str], dict[str, Array]]:
+    """Gaps of each planner as an array of runs x scenes.
+
+    Parameters
+    ----------
+    steps : Steps
+
+    Returns
+    -------
+    list of str
+        The scenes with an optimum that all planners ran.
+    dict from str to (runs, scenes) float64
+        Infinite where a run has no accepted path, nan where there is no run.
+    """
+    gaps = steps.runs[["place", "variant"]].assign(gap=final_gaps(steps))[~np.isnan(steps.optimum)]
+    ran = gaps.groupby("place", sort=False)["variant"].nunique()
+    scenes = list(ran.index[ran == steps.runs["variant"].nunique()])
+    shared = gaps[gaps["place"].isin(scenes)]
+    return scenes, {
+        str(planner): _side_by_side([here.loc[here["place"] == s, "gap"] for s in scenes])
+        for planner, here in shared.groupby("variant", sort=False)
+    }
+
+
+def _side_by_side(columns: "list[pd.Series[Any]]") -> Array:
+    scores = np.full((max(map(len, columns)), len(columns)), np.nan)
+    for j, column in enumerate(columns):
+        scores[: len(column), j] = column
+    return scores
+
+
+def planner_statistics(scores: Mapping[str, Array], rng: np.random.Generator) -> pd.DataFrame:
+    """Interquartile mean of the gap and probability that the reference is better, with intervals.
+
+    Parameters
+    ----------
+    scores : mapping from planner to (runs, scenes) float64
+        See :func:`scores_by_planner`.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    DataFrame
+        A row for each planner.
+    """
+    reference = reference_of(scores)
+    rows = []
+    for planner, mine in scores.items():
+        row: dict[str, Any] = {
+            "planner": planner,
+            "runs": int((~np.isnan(mine)).sum()),
+            "failed": int(np.isinf(mine).sum()),
+            **_named("gap IQM (%)", _in_per_cent(bootstrap(mine, interquartile_mean, rng))),
+        }
+        if planner != reference:
+            better = probability_interval(scores[reference], mine, rng)
+            row |= _named(f"{reference} better", better)
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def scene_statistics(scenes: list[str], scores: Mapping[str, Array]) -> pd.DataFrame:
+    """Mann and Whitney's test of the reference against each other planner on each scene.
+
+    Parameters
+    ----------
+    scenes : list of str
+    scores : mapping from planner to (runs, scenes) float64
+
+    Returns
+    -------
+    DataFrame
+        A row for each other planner and scene; p-values as they are, and corrected for the number
+        of rows, after Holm.
+    """
+    reference = reference_of(scores)
+    rows = []
+    for planner in [name for name in scores if name != reference]:
+        for j, scene in enumerate(scenes):
+            mine, other = (scores[name][:, j] for name in (reference, planner))
+            better = probability_better(mine[:, None], other[:, None])
+            p_value = mann_whitney(mine[~np.isnan(mine)], other[~np.isnan(other)])
+            rows.append(
+                {"scene": scene, "planner": planner, f"{reference} better": better, "p": p_value}
+            )
+    frame = pd.DataFrame(rows)
+    return frame.assign(**{"Holm's p": holm(frame["p"].to_numpy())}) if rows else frame
+
+
+def reference_of(scores: Mapping[str, Array]) -> str:
+    """The planner that the others are compared with."""
+    return REFERENCE if REFERENCE in scores else next(iter(scores))
+
+
+def statistics_tables(steps: Steps, rng: np.random.Generator) -> list[Table]:
+    """Statistics of the planners, and tests scene by scene."""
+    scenes, scores = scores_by_planner(steps)
+    if not scenes:
+        return []
+    where = f"{len(scenes)} scene{'s' if len(scenes) != 1 else ''}"
+    overall = planner_statistics(scores, rng)
+    if len(scores) == 1:
+        title = f"Gap over {where}, with 95 % intervals"
+        return [Table("statistics", title, overall, f"{IQM_NOTE} {INTERVAL_NOTE}", "none")]
+    pair = PAIR_NOTE.format(reference=reference_of(scores))
+    tested = scene_statistics(scenes, scores)
+    glanced = at_a_glance(tested, ["planner"], _tested(reference_of(scores)))
+    better = f"Probability that {reference_of(scores)} is better"
+    return [
+        Table(
+            "statistics",
+            f"Gap and pairwise probabilities over {where}, with 95 % intervals",
+            overall,
+            f"{IQM_NOTE} {pair}; mean over the scenes. {INTERVAL_NOTE}",
+            "none",
+        ),
+        Table(
+            "statistics-scenes",
+            f"{better} on each scene",
+            glanced,
+            f"{pair}. In brackets Mann and Whitney's two-sided p-value, after Holm's correction "
+            f"for all {len(tested)} comparisons of this table.",
+        ),
+        Table("statistics-scenes-rows", f"{better}, and tests", tested, f"{pair}.", detail=True),
+    ]
+
+
+def _tested(reference: str) -> Any:
+    def cell(row: Mapping[Any, Any]) -> str:
+        p_value = row["Holm's p"]
+        small = "<0.001" if p_value < 0.001 else f"{p_value:.3f}"
+        return f"{row[f'{reference} better']:.2f} ({small})"
+
+    return cell
+
+
+def _named(what: str, interval: Interval) -> dict[str, float]:
+    return {what: interval.estimate, f"{what} low": interval.low, f"{what} high": interval.high}
+
+
+def _in_per_cent(interval: Interval) -> Interval:
+    return Interval(100.0 * interval.estimate, 100.0 * interval.low, 100.0 * interval.high)
