@@ -209,7 +209,8 @@ def plan(
         settings=parse_settings(settings or []),
         budget=Budget(wall_s, generations, checks),
     )
-    recorder = Recorder(keep_snapshots=plot is not None)
+    # Of the first population only: more would slow down the run that is timed.
+    recorder = Recorder(snapshot_of=lambda generation: plot is not None and generation == 0)
     if plot is None:
         record = run_cell(cell, recorder=recorder)
     else:
@@ -348,17 +349,24 @@ def run(
         list[Path] | None,
         typer.Option(metavar="STORE", help="First take in the rows of another store; repeatable."),
     ] = None,
+    snapshots: Annotated[
+        int,
+        typer.Option(min=0, help="Keep the populations of so many runs, for the report's player."),
+    ] = 40,
 ) -> None:
     """Run what a store still lacks of a matrix, each run in a process of its own.
 
-    It can be stopped at any time and started again: only the runs in flight are lost. Exit code 0
-    if all is done, 1 if rows of other stores are in conflict, 130 after Ctrl-C.
+    It can be stopped at any time and started again: only the runs in flight are lost. At the end
+    some runs of planners with a population are done again, outside any clock, to keep it.
+
+    Exit code 0 if all is done, 1 if rows of other stores are in conflict, 130 after Ctrl-C.
 
     Example: kbga-bench run paper-static --store out/paper.db --jobs 2
     """
     from suite.harness.display import Display
     from suite.harness.matrix import load_matrix
     from suite.harness.run import Which, run_matrix
+    from suite.harness.snapshots import keep_snapshots
     from suite.store import open_store
 
     if force and only_failed:
@@ -377,13 +385,14 @@ def run(
                 end = run_matrix(
                     wanted, opened, jobs=jobs, quick=quick, which=which, on_progress=display
                 )
+            kept = keep_snapshots(wanted, opened, most=snapshots)
         except KeyboardInterrupt:
             typer.echo(
                 "Stopped. All finished runs are kept; to go on, give the same command again.",
                 err=True,
             )
             raise typer.Exit(130) from None
-    typer.echo(end.summary())
+    typer.echo(" ".join(filter(None, (end.summary(), kept.summary()))))
     raise typer.Exit(0 if clean else 1)
 
 

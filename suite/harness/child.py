@@ -6,11 +6,14 @@ import os
 import random
 import select
 import signal
+from collections.abc import Collection
+from dataclasses import replace
 from multiprocessing.connection import Connection
 
 import numpy as np
 
 from suite.harness.cell import run_cell
+from suite.planner import Recorder
 from suite.record import Cell, RunRecord
 
 PLANNING = "planning"
@@ -21,7 +24,10 @@ ORPHAN_S = 3600
 
 
 def run_in_child(
-    cell: Cell, messages: "Connection[str | RunRecord, None]", stderr: "Connection[None, None]"
+    cell: Cell,
+    messages: "Connection[str | RunRecord, None]",
+    stderr: "Connection[None, None]",
+    snapshots_of: Collection[int] = (),
 ) -> None:
     """Run a cell and send what came of it; the target of the process of one run.
 
@@ -32,12 +38,16 @@ def run_in_child(
         Takes PLANNING, then the RunRecord.
     stderr : Connection
         Takes what the process writes to its standard error.
+    snapshots_of : collection of int
+        Generations of which the record is to have snapshots.
     """
     _become_own_group()
     _redirect_output(stderr.fileno())
     _die_with_parent()
     _seed_globals(cell)
-    messages.send(run_cell(cell, before_plan=lambda: messages.send(PLANNING)))
+    recorder = Recorder(snapshot_of=snapshots_of.__contains__)
+    record = run_cell(cell, recorder=recorder, before_plan=lambda: messages.send(PLANNING))
+    messages.send(replace(record, snapshots=tuple(recorder.snapshots)))
     # Without the interpreter's farewell: destructors of a planner's libraries may hang or crash,
     # and threads that it left running would be waited for.
     os._exit(0)

@@ -14,7 +14,7 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from multiprocessing.connection import Connection, wait
@@ -43,7 +43,9 @@ _BOOKKEEPING = threading.Lock()
 _running: set[int] = set()
 
 
-def run_isolated(cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
+def run_isolated(
+    cell: Cell, limits: Limits, warmth: Warmth, *, snapshots_of: Collection[int] = ()
+) -> RunRecord:
     """Run one cell in a process of its own. Safe to call from several threads.
 
     Parameters
@@ -53,6 +55,8 @@ def run_isolated(cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
         When to kill it.
     warmth : Warmth
         For the fork server, if this call is the first to need one.
+    snapshots_of : collection of int
+        Generations of which the record is to have snapshots; none in a measured run.
 
     Returns
     -------
@@ -60,7 +64,7 @@ def run_isolated(cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
         Always: a process that hangs is TIMED_OUT, one that dies is CRASHED.
     """
     started_at = datetime.now(UTC).isoformat(timespec="seconds")
-    with _started(cell, warmth) as child:
+    with _started(cell, warmth, snapshots_of) as child:
         record = _watch(child, limits)
     if record.status in (PlanStatus.TIMED_OUT, PlanStatus.CRASHED):
         record = replace(record, started_at=started_at, host=host_name())
@@ -125,14 +129,16 @@ class _Tail:
 
 
 @contextlib.contextmanager
-def _started(cell: Cell, warmth: Warmth) -> Iterator[_Child]:
+def _started(cell: Cell, warmth: Warmth, snapshots_of: Collection[int]) -> Iterator[_Child]:
     """A process that runs the cell; it and its descendants are gone afterwards."""
     receiver, sender = _CONTEXT.Pipe(duplex=False)
     error_reader, error_writer = _CONTEXT.Pipe(duplex=False)
     with receiver, error_reader:
         # The first start, and one after the death of the server, makes a new server.
         with sender, error_writer, _BOOKKEEPING, _server_environment(warmth):
-            process = _CONTEXT.Process(target=run_in_child, args=(cell, sender, error_writer))
+            process = _CONTEXT.Process(
+                target=run_in_child, args=(cell, sender, error_writer, snapshots_of)
+            )
             process.start()
         pid: int = process.ident or 0
         _running.add(pid)
