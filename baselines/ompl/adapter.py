@@ -3,6 +3,7 @@
 Each planner is one row of settings and one way of watching it while it runs. Metres.
 """
 
+import time
 from abc import abstractmethod
 from collections.abc import Callable
 from typing import Any, ClassVar
@@ -60,6 +61,7 @@ class OmplPlanner(Planner):
         recorder: Recorder,
     ) -> Plan:
         """Run OMPL's planner within the budget."""
+        began = time.perf_counter()
         if not (is_free_point(scene, query.start) and is_free_point(scene, query.goal)):
             return Plan(PlanStatus.INFEASIBLE, checks=0)
         if np.array_equal(query.start, query.goal):
@@ -76,7 +78,11 @@ class OmplPlanner(Planner):
         limit = np.inf if budget.checks is None else budget.checks
         problem = Problem(scene, query, self._build, limit, wall_s, recorder.wall_s)
         path = self._run(problem, recorder)
-        details = {"state_checks": float(problem.collision.state_checks), **self._measures(problem)}
+        details = {
+            "state_checks": float(problem.collision.state_checks),
+            **self._measures(problem),
+            **callback_share(problem.collision, time.perf_counter() - began),
+        }
         checks = problem.collision.checks
         if path is None:
             return Plan(
@@ -110,6 +116,16 @@ class OmplPlanner(Planner):
     def _measures(self, problem: "Problem") -> dict[str, float]:  # noqa: ARG002
         """Any numbers of the planner's own to keep with the row."""
         return {}
+
+
+def callback_share(collision: ExactCollision, elapsed_s: float) -> dict[str, float]:
+    """Share of the run that went into answering OMPL's questions in Python, estimated.
+
+    The mean time of an answer (see :meth:`ExactCollision.mean_s`) times the number of checks. A
+    run of one check has no estimate.
+    """
+    mean_s = collision.mean_s()
+    return {} if mean_s is None else {"callback_share": mean_s * collision.checks / elapsed_s}
 
 
 class Problem:

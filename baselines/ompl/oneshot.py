@@ -50,9 +50,12 @@ class SimplifiedPlanner(OneShotPlanner):
         found = super()._run(problem, recorder)
         if found is None or not self.settings.simplify:
             return found
-        path = simplify(problem)
+        simplify(problem)
+        path = problem.path()
+        if path is None or path_length(path) >= path_length(found):
+            return found
         recorder.improved(path_length(path), checks=problem.collision.checks)
-        return min(path, found, key=path_length)
+        return path
 
 
 @dataclass(frozen=True, slots=True)

@@ -101,16 +101,17 @@ class RoadmapPlanner(OmplPlanner):
     def _grow(self, problem: Problem, elapsed_s: float, search_s: float) -> None:
         """Grow the roadmap until the slice ends: by checks if they are limited, else by time."""
         settings, collision = self.settings, problem.collision
+        slice_ends = np.inf
         left_s = min(problem.remaining_s() - search_s, NO_LIMIT_S)
         if np.isfinite(collision.limit):
             size = max(settings.slice_checks, settings.slice_growth * collision.checks)
-            collision.stop_at = min(collision.checks + int(size), collision.limit)
+            slice_ends = min(collision.checks + int(size), collision.limit)
         else:
             left_s = min(left_s, max(settings.slice_s, settings.slice_growth * elapsed_s))
         condition = ob.timedPlannerTerminationCondition(max(left_s, 1e-4))
-        collision.stop = condition.terminate
+        collision.call_at(slice_ends, condition.terminate)
         problem.planner.growRoadmapPtc(condition)
-        collision.stop = do_nothing
+        collision.call_at(np.inf, do_nothing)
 
     def _measures(self, problem: Problem) -> dict[str, float]:
         return {

@@ -4,7 +4,6 @@ It cuts corners wherever the shortcut is free, and drops and merges vertices.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from ompl import base as ob
 from ompl import geometric as og
 
@@ -19,33 +18,25 @@ class BudgetSpentError(Exception):
     """Ends the simplifier in the middle of a step."""
 
 
-def simplify(problem: Problem) -> NDArray[np.float64]:
+def simplify(problem: Problem) -> None:
     """Simplify the problem's solution until nothing changes or the budget is spent.
 
     The path is free after each check. Merely refused when the budget is spent, OMPL would take the
     path for a colliding one and move its waypoints at random to mend it: an exception ends it.
-
-    Returns
-    -------
-    (n, 2) float64, metres: the path so far.
     """
     collision = problem.collision
 
     def look() -> None:
         if problem.is_over():
             raise BudgetSpentError
-        collision.stop_at = min(collision.checks + CHECKS_BETWEEN_LOOKS, collision.limit)
+        collision.call_at(min(collision.checks + CHECKS_BETWEEN_LOOKS, collision.limit), look)
 
     solution = problem.definition.getSolutionPath()
     is_over = ob.PlannerTerminationCondition(problem.is_over)
-    collision.stop = look
-    collision.stop_at = collision.checks
+    collision.call_at(collision.checks, look)
     try:
         og.PathSimplifier(problem.information).simplify(solution, is_over, False)
     except BudgetSpentError:
         pass
     finally:
-        collision.stop = do_nothing  # which knew the problem, which knows the collision
-    path = problem.path()
-    assert path is not None
-    return path
+        collision.call_at(np.inf, do_nothing)  # ``look`` would keep the problem alive

@@ -48,7 +48,6 @@ class Watch:
         self._recorder = recorder
         self._iterations = iterations
         # An iteration of AORRTC may go on for ever: while it does, checks look at the clock.
-        self._collision.stop = self._look
         self._look()
 
     def __call__(self) -> bool:
@@ -69,11 +68,11 @@ class Watch:
         collision = self._collision
         if self._clock() >= self._wall_s:
             collision.limit = collision.checks
-        collision.stop_at = min(collision.checks + CHECKS_BETWEEN_LOOKS, collision.limit)
+        collision.call_at(collision.checks + CHECKS_BETWEEN_LOOKS, self._look)
 
     def let_go(self) -> None:
         """Forget the run."""
-        self._collision.stop = do_nothing
+        self._collision.call_at(np.inf, do_nothing)
         del self._best_cost, self._problem, self._collision
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from suite.report.anytime import Array, Steps, gap_at
-from suite.report.compared import at_a_glance
+from suite.report.compared import SIDE_BY_SIDE, at_a_glance
 from suite.report.table import Table
 from suite.report.targets import medians
 
@@ -77,12 +77,13 @@ def budget_tables(steps: Steps) -> list[Table]:
     frame = fixed_budget(steps)
     if frame.empty:
         return []
-    glanced = at_a_glance(_with_budget_names(frame), ["planner", "after"], _cell)
     title = "Median gap (%) after a fixed wall time"
-    return [
-        Table("fixed-budget", title, glanced, f"k of n: how many runs had a path. {NOTE}"),
-        Table("fixed-budget-rows", title, frame, NOTE, "no path", detail=True),
-    ]
+    rows = Table("fixed-budget-rows", title, frame, NOTE, infinite="no path", detail=True)
+    if frame["scene"].nunique() > SIDE_BY_SIDE:
+        return [rows]
+    glanced = at_a_glance(_with_budget_names(frame), ["planner", "after"], _cell)
+    note = f"k of n: how many runs had a path. {NOTE}"
+    return [Table("fixed-budget", title, glanced, note), rows]
 
 
 def _with_budget_names(frame: pd.DataFrame) -> pd.DataFrame:

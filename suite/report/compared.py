@@ -18,6 +18,9 @@ PENALTIES_NOTE = (
 )
 RATIO_NOTE = "ratio: of the cpu time to that of {reference}."
 
+SIDE_BY_SIDE = 12
+"""Scenes that a table has room for: of more, there are only the rows."""
+
 _BUDGET = ["budget_wall_s", "budget_generations", "budget_checks"]
 
 

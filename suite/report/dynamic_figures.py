@@ -44,8 +44,8 @@ TURN_M = 1.0
 
 FRAMES_PER_SECOND = 10
 """Frames for each simulated second, as long as they are not more than MOST_FRAMES."""
-MOST_FRAMES = 200
-SHOWN_PER_SECOND = 20
+MOST_FRAMES = 120
+SHOWN_PER_SECOND = 15
 STANDS_S = 2
 """Seconds for which the end stands before an animation begins anew."""
 FRAME = 5.0

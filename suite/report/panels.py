@@ -62,8 +62,13 @@ def numbered(planners: Iterable[str]) -> dict[str, int]:
 
 def look(i: int) -> dict[str, Any]:
     """Colour, line style and marker of the planner of number i."""
-    colour, style = LINES[i % len(LINES)]
-    return {"color": colour, "linestyle": style, "marker": MARKERS[i % len(MARKERS)]}
+    # Planners that share a colour differ in style and marker.
+    again = i // len(LINES)
+    return {
+        "color": LINES[i % len(LINES)][0],
+        "linestyle": LINES[(i + again) % len(LINES)][1],
+        "marker": MARKERS[i % len(MARKERS)],
+    }
 
 
 def scene_panels(scenes: Sequence[str], *, height: float = 2.3, share_x: bool = True) -> Panels:

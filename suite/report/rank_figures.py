@@ -21,11 +21,15 @@ from suite.report.ranking import Ranking, rankings, scene_scores
 PLANNERS_AT_MOST = 30
 """More names can't be read."""
 
-WIDTH = 9.0
-"""Inches."""
+AXIS = 4.4
+"""Length of the axis of ranks, inches, and for each rank if that is more:"""
+RANK = 0.35
 
-CHARACTER = 0.075
+CHARACTER = 0.08
 """Width of a character of a name, inches."""
+
+GAP = 0.2
+"""Between the axis of ranks and the ends of the lines to the names, inches."""
 
 LINE = 0.27
 """Height of a name, inches."""
@@ -34,9 +38,10 @@ ABOVE = 0.95
 """Height of the title and the bar of the critical difference, inches."""
 
 HOW_TO_READ = (
-    "Each planner stands at its mean rank over the scenes; farther left is better. Thick lines "
-    "join planners whose mean ranks differ by less than the critical difference (CD) of Nemenyi's "
-    "test at 5 %: these scenes do not tell them apart."
+    "Each planner stands at its mean rank over the scenes; farther left is better. By gap: success "
+    "first, then the median gap; by time: the median time to come within 1 %. Thick lines join "
+    "planners whose mean ranks differ by less than the critical difference (CD) of Nemenyi's test "
+    "at 5 %: these scenes do not tell them apart."
 )
 
 
@@ -74,16 +79,17 @@ def plot_ranks(found: Sequence[Ranking]) -> Figure:
         ABOVE + LINE * (_rows(len(r.mean)) + 0.4 * len(b))
         for r, b in zip(found, bands, strict=True)
     ]
+    beside, length = _beside(found), _axis_length(found)
     figure, grid = plt.subplots(
         len(found),
         1,
-        figsize=(WIDTH, 1.0 + sum(heights)),
+        figsize=(2 * beside + length, 1.0 + sum(heights)),
         squeeze=False,
         layout="constrained",
         gridspec_kw={"height_ratios": heights},
     )
     for axes, ranking, bars in zip(grid.flat, found, bands, strict=True):
-        _draw(axes, ranking, bars)
+        _draw(axes, ranking, bars, beside / length)
     figure.suptitle("Mean ranks, and the critical difference", fontsize=11)
     legend(figure, {}, HOW_TO_READ)
     return figure
@@ -123,19 +129,31 @@ def _bars(ranking: Ranking) -> list[tuple[float, float]]:
     return [(ranks[first], ranks[last]) for first, last in groups]
 
 
+def _beside(found: Sequence[Ranking]) -> float:
+    """Room for the names on each side of the axis of ranks, inches."""
+    longest = max(len(str(planner)) for ranking in found for planner in ranking.ranks.columns)
+    return CHARACTER * (longest + 6) + 2 * GAP
+
+
+def _axis_length(found: Sequence[Ranking]) -> float:
+    return max(AXIS, RANK * max(len(ranking.ranks.columns) - 1 for ranking in found))
+
+
 def _rows(planners: int) -> int:
     return -(-planners // 2)
 
 
-def _draw(axes: Axes, ranking: Ranking, bars: Sequence[tuple[float, float]]) -> None:
-    """Draw one diagram; y counts rows of names downwards from the axis of ranks."""
+def _draw(axes: Axes, ranking: Ranking, bars: Sequence[tuple[float, float]], beside: float) -> None:
+    """Draw one diagram, with so much room on each side of its axis, in lengths of that.
+
+    y counts rows of names downwards from the axis.
+    """
     mean = ranking.mean.sort_values(kind="stable")
     count = len(mean)
     depth = 0.5 + 0.4 * len(bars)
-    # The names stand beside the axis, which is in the middle of what they leave.
-    beside = CHARACTER * (max(map(len, map(str, mean.index))) + 8)
-    rank = (count - 1) / max(WIDTH - 2 * beside, 1.0)
-    axes.set_xlim(1.0 - rank * beside, count + rank * beside)
+    room = beside * (count - 1)
+    gap = 0.04 * (count - 1)
+    axes.set_xlim(1.0 - room, count + room)
     axes.set_ylim(depth + _rows(count), -2.0)
     axes.axis("off")
     axes.set_title(f"{ranking.name} ({len(ranking.ranks)} scenes)", fontsize=10)
@@ -143,8 +161,8 @@ def _draw(axes: Axes, ranking: Ranking, bars: Sequence[tuple[float, float]]) -> 
     _draw_difference(axes, ranking.critical_difference, count)
     for i, (low, high) in enumerate(bars):
         y = 0.4 + 0.4 * i
-        axes.plot([low - 0.04, high + 0.04], [y, y], color="black", linewidth=4)
-    _draw_names(axes, mean, depth)
+        axes.plot([low - 0.2 * gap, high + 0.2 * gap], [y, y], color="black", linewidth=4)
+    _draw_names(axes, mean, depth, gap)
 
 
 def _draw_axis(axes: Axes, count: int) -> None:
@@ -162,20 +180,19 @@ def _draw_difference(axes: Axes, difference: float, count: int) -> None:
     axes.text((1.0 + end) / 2, -1.4, text, ha="center", va="bottom", fontsize=9)
 
 
-def _draw_names(axes: Axes, mean: "pd.Series[Any]", depth: float) -> None:
-    """Write the better half on the left, the best one lowest, the other on the right."""
+def _draw_names(axes: Axes, mean: "pd.Series[Any]", depth: float, gap: float) -> None:
+    """Write the better half on the left, and the other on the right; the outer ones are highest."""
     count = len(mean)
     half = _rows(count)
-    step = 0.02 * count
     for i, (planner, rank) in enumerate(mean.items()):
         is_left = i < half
         y = depth + (i if is_left else count - 1 - i) + 0.3
-        edge = 1.0 - 2 * step if is_left else count + 2 * step
+        edge = 1.0 - gap if is_left else count + gap
         axes.plot([rank, rank, edge], [0, y, y], color="#606060", linewidth=0.9)
         name = f"{planner}  {rank:.2f}" if is_left else f"{rank:.2f}  {planner}"
         side = "right" if is_left else "left"
         axes.text(
-            edge + (-step if is_left else step),
+            edge + (-0.4 * gap if is_left else 0.4 * gap),
             y,
             name,
             ha=side,

@@ -3,20 +3,26 @@
 import hashlib
 import json
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from suite.dynamic.plain import from_data
 from suite.errors import KbgaBenchError, StoreError
+from suite.report.anytime import steps_of
+from suite.report.comparison_figures import comparison_figures
+from suite.report.convergence_figures import convergence_figures
 from suite.report.dynamic_figures import plot_snapshots
 from suite.report.export import export_rows, made_folder
 from suite.report.figures import LINES, plot_scene_results, save
 from suite.report.newest import newest
+from suite.report.rank_figures import rank_figures
+from suite.report.runtime_figures import runtime_figures
 from suite.report.simulated import is_simulated
 from suite.report.study_figures import study_figures
 from suite.report.summary import feasible
@@ -25,6 +31,7 @@ from suite.report.tables import all_tables
 from suite.scene import Query, Scene, scene_fingerprint
 from suite.scenes.catalogue import load_scene
 from suite.store import (
+    read_events,
     read_first_measures,
     read_paths,
     read_replans,
@@ -40,8 +47,8 @@ MANIFEST = "manifest.json"
 def write_results(store: Path, directory: Path, *, leave_out: Collection[str] = ()) -> list[Path]:
     """Make a results folder from a store; the same store gives the same bytes.
 
-    There is a figure for each study, and one of the best paths for each scene where a reader can
-    still tell them apart.
+    There are figures of each study and of how the planners compare, and one of the best paths for
+    each scene, where a reader can still tell them apart.
 
     Parameters
     ----------
@@ -73,7 +80,8 @@ def write_results(store: Path, directory: Path, *, leave_out: Collection[str] = 
     files += write_tables(tables, folder, Format.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
     planned = current[~is_simulated(current)]
-    files += _write_figures(planned, read_paths(store), scenes, folder)
+    files += _write_figures(_figures(planned, read_events(store)), folder)
+    files += _write_scene_figures(planned, read_paths(store), scenes, folder)
     files += _write_snapshots(current[is_simulated(current)], store, folder)
     manifest = folder / MANIFEST
     made = _manifest(store, runs, folder, files, leave_out)
@@ -92,6 +100,7 @@ def read_tables(store: Path) -> list[Table]:
     return all_tables(
         read_runs(store),
         read_first_measures(store),
+        read_events(store),
         simulations=read_simulations(store),
         replans=read_replans(store),
     )
@@ -130,14 +139,31 @@ def _scenes(runs: pd.DataFrame) -> list[tuple[Scene, Query]]:
     return pairs
 
 
-def _write_figures(
-    runs: pd.DataFrame, paths: dict[str, Any], scenes: list[tuple[Scene, Query]], folder: Path
-) -> list[Path]:
+def _figures(runs: pd.DataFrame, events: pd.DataFrame) -> dict[str, Figure]:
+    """All figures but those of the scenes, by the names of their files."""
+    steps = steps_of(runs, events)
+    return {
+        **study_figures(runs),
+        **convergence_figures(steps),
+        **runtime_figures(steps),
+        **comparison_figures(steps),
+        **rank_figures(steps),
+    }
+
+
+def _write_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     files = []
-    for name, figure in study_figures(runs).items():
+    for name, figure in figures.items():
         file = folder / f"{name}.png"
         save(figure, file)
         files.append(file)
+    return files
+
+
+def _write_scene_figures(
+    runs: pd.DataFrame, paths: dict[str, Any], scenes: list[tuple[Scene, Query]], folder: Path
+) -> list[Path]:
+    files = []
     for scene, query in scenes:
         here = runs[(runs["scene"] == scene.name) & (runs["query"] == query.name)]
         if here.empty or here["variant"].nunique() > len(LINES):

@@ -6,14 +6,14 @@ worse than any path, and an interquartile mean is given only where at most a qua
 failed; no other number is put in its place.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from suite.report.anytime import Array, Steps, final_gaps
-from suite.report.compared import at_a_glance
+from suite.report.compared import SIDE_BY_SIDE, at_a_glance
 from suite.report.statistics import (
     Interval,
     bootstrap,
@@ -137,7 +137,7 @@ def reference_of(scores: Mapping[str, Array]) -> str:
 
 
 def statistics_tables(steps: Steps, rng: np.random.Generator) -> list[Table]:
-    """Statistics of the planners, and tests scene by scene."""
+    """Statistics of the planners over all scenes, and tests scene by scene."""
     scenes, scores = scores_by_planner(steps)
     if not scenes:
         return []
@@ -147,29 +147,28 @@ def statistics_tables(steps: Steps, rng: np.random.Generator) -> list[Table]:
         title = f"Gap over {where}, with 95 % intervals"
         return [Table("statistics", title, overall, f"{IQM_NOTE} {INTERVAL_NOTE}", "none")]
     pair = PAIR_NOTE.format(reference=reference_of(scores))
+    title = f"Gap and pairwise probabilities over {where}, with 95 % intervals"
+    note = f"{IQM_NOTE} {pair}; mean over the scenes. {INTERVAL_NOTE}"
+    return [Table("statistics", title, overall, note, "none"), *_scene_tables(scenes, scores, pair)]
+
+
+def _scene_tables(scenes: list[str], scores: Mapping[str, Array], pair: str) -> list[Table]:
+    """Mann and Whitney's tests: at a glance, where there is room, and as rows."""
+    reference = reference_of(scores)
+    title = f"Probability that {reference} is better on each scene"
     tested = scene_statistics(scenes, scores)
-    glanced = at_a_glance(tested, ["planner"], _tested(reference_of(scores)))
-    better = f"Probability that {reference_of(scores)} is better"
-    return [
-        Table(
-            "statistics",
-            f"Gap and pairwise probabilities over {where}, with 95 % intervals",
-            overall,
-            f"{IQM_NOTE} {pair}; mean over the scenes. {INTERVAL_NOTE}",
-            "none",
-        ),
-        Table(
-            "statistics-scenes",
-            f"{better} on each scene",
-            glanced,
-            f"{pair}. In brackets Mann and Whitney's two-sided p-value, after Holm's correction "
-            f"for all {len(tested)} comparisons of this table.",
-        ),
-        Table("statistics-scenes-rows", f"{better}, and tests", tested, f"{pair}.", detail=True),
-    ]
+    tests = (
+        "Mann and Whitney's two-sided p-value, after Holm's correction for all "
+        f"{len(tested)} comparisons of this table."
+    )
+    rows = Table("statistics-scenes-rows", title, tested, f"{pair}. Holm's p: {tests}", detail=True)
+    if len(scenes) > SIDE_BY_SIDE:
+        return [rows]
+    glanced = at_a_glance(tested, ["planner"], _tested(reference))
+    return [Table("statistics-scenes", title, glanced, f"{pair}. In brackets: {tests}"), rows]
 
 
-def _tested(reference: str) -> Any:
+def _tested(reference: str) -> Callable[[Mapping[Any, Any]], str]:
     def cell(row: Mapping[Any, Any]) -> str:
         p_value = row["Holm's p"]
         small = "<0.001" if p_value < 0.001 else f"{p_value:.3f}"

@@ -1,24 +1,36 @@
 """All tables of a store's runs: pure functions of its rows."""
 
+import numpy as np
 import pandas as pd
 
 from suite.report.ablation import ablation_tables
+from suite.report.anytime import Steps, steps_of
+from suite.report.budgets import budget_tables
 from suite.report.newest import newest
 from suite.report.paper_tables import COST_NOTE, paper_tables
+from suite.report.ranking import ranking_tables
 from suite.report.simulated import is_simulated, simulated_tables
+from suite.report.statistics_tables import statistics_tables
 from suite.report.studies import study_tables
 from suite.report.summary import summary_table
 from suite.report.table import Table
+from suite.report.targets import target_tables
+
+BOOTSTRAP_SEED = 2004
+"""Any will do; the same rows give the same intervals."""
 
 
 def all_tables(
     runs: pd.DataFrame,
     first: pd.DataFrame | None = None,
+    events: pd.DataFrame | None = None,
     *,
     simulations: pd.DataFrame | None = None,
     replans: pd.DataFrame | None = None,
 ) -> list[Table]:
-    """The summary, then the paper's comparisons and the studies that these runs can answer.
+    """The summary, the paper's comparisons, the studies, and how the planners compare.
+
+    Those that these runs can't answer are left out.
 
     Parameters
     ----------
@@ -26,6 +38,9 @@ def all_tables(
         As :func:`suite.store.read_runs` gives it.
     first : DataFrame, optional
         As :func:`suite.store.read_first_measures` gives it.
+    events : DataFrame, optional
+        As :func:`suite.store.read_events` gives it. Without it there are no fixed targets and
+        budgets, ranking and statistics.
     simulations, replans : DataFrame, optional
         As :func:`suite.store.read_simulations` and :func:`suite.store.read_replans` give them.
         Without them there are no tables of simulated runs.
@@ -49,4 +64,15 @@ def all_tables(
         *paper_tables(kept),
         *ablation_tables(kept, COST_NOTE),
         *study_tables(kept, first),
+        *([] if events is None else measured_tables(steps_of(kept, events))),
+    ]
+
+
+def measured_tables(steps: Steps) -> list[Table]:
+    """Fixed targets and budgets, the ranking and the statistics of runs as step functions."""
+    return [
+        *target_tables(steps),
+        *budget_tables(steps),
+        *ranking_tables(steps),
+        *statistics_tables(steps, np.random.default_rng(BOOTSTRAP_SEED)),
     ]

@@ -302,9 +302,16 @@ def test_run_keeps_rows_and_says_how_it_ended(kbga_bench, matrix_file, tmp_path)
 
 
 def test_tables_in_every_format(kbga_bench, filled, tmp_path):
-    assert "success" in kbga_bench("tables", filled).out
+    text = kbga_bench("tables", filled).out
+    assert "success" in text
+    assert "Median time (ms) to come within a gap of the optimum" in text
+    assert "Median gap (%) after a fixed wall time" in text
+    # The rows behind them are too many to be read.
+    assert "What it takes to come" not in text
+    assert "written with --output: fixed-target-rows, fixed-budget-rows" in text
     csv = kbga_bench("tables", filled, "--format", "csv").out
     assert csv.startswith("scene,planner,runs,solved")
+    assert "scene,planner,target (%),runs,reached,reached (%),time median (ms)" in csv
     assert "| wall" in kbga_bench("tables", filled, "--format", "markdown").out
     assert r"\begin{tabular}" in kbga_bench("tables", filled, "--format", "latex").out
     kbga_bench("tables", filled, "--format", "markdown", "--output", tmp_path / "t")
@@ -318,6 +325,14 @@ def test_results_hold_tables_rows_figures_and_the_manifest(kbga_bench, filled, t
         "summary.md",
         "summary.csv",
         "wall.png",
+        "fixed-target.md",
+        "fixed-budget-rows.csv",
+        "ranking.csv",
+        "statistics.md",
+        "convergence-time.png",
+        "ecdf.png",
+        "gap-boxes.png",
+        "gap-time.png",
         "manifest.json",
         "rows/runs.parquet",
         "rows/paths.parquet",

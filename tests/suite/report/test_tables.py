@@ -8,7 +8,7 @@ from suite.report.paper_tables import paper_static, paper_table_1, paper_tables
 from suite.report.summary import summary
 from suite.report.table import Format, Table, render
 from suite.report.tables import all_tables
-from suite.store import open_store, read_runs
+from suite.store import open_store, read_events, read_runs
 from tests.suite.harness.records import make_cell, make_record
 
 
@@ -176,3 +176,35 @@ def test_latex_is_escaped_and_has_caption_and_label(table):
     assert r"\label{tab:costs}" in text
     assert r"a\_b" in text
     assert r"\begin{tabular}{lrr}" in text
+
+
+def test_the_new_tables_come_last_and_the_same_rows_give_the_same_bytes(runs_of, tmp_path):
+    when = {"started_at": "2026-01-01T00:00:00"}
+    runs = runs_of(
+        *(solved(156.0 + seed, seed=seed, **when) for seed in range(2)),
+        *(exhausted(seed=seed, **when) for seed in range(2)),
+    )
+    events = read_events(tmp_path / "s.db")
+    one, two = (all_tables(runs, events=events) for _ in range(2))
+    names = [table.name for table in one]
+    assert names[-4:] == [
+        "ranking-rows",
+        "statistics",
+        "statistics-scenes",
+        "statistics-scenes-rows",
+    ]
+    assert names.index("paper-static") < names.index("fixed-target")
+    assert [render(t, Format.CSV) for t in one] == [render(t, Format.CSV) for t in two]
+    assert not set(names[-4:]) & {table.name for table in all_tables(runs)}
+
+
+def test_an_infinite_number_is_printed_in_words():
+    frame = pd.DataFrame({"time (ms)": [1.0, float("inf")]})
+    table = Table("t", "T", frame, infinite="never")
+    assert "never" in render(table, Format.TABLE)
+    assert render(table, Format.CSV) == "time (ms)\n1.0\ninf\n"
+
+
+def test_small_p_values_keep_their_digits():
+    table = Table("t", "T", pd.DataFrame({"p": [0.00123], "x": [0.00123]}))
+    assert "0.0012" in render(table, Format.MARKDOWN)

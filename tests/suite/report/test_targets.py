@@ -57,6 +57,12 @@ def test_at_a_glance_it_says_how_many_came_so_near():
     assert glance["maze"].tolist() == ["10.0", "10.0", "10.0", "never (0 of 2)"]
 
 
+def test_more_scenes_than_stand_side_by_side_leave_the_rows():
+    runs = [measured("kbga", 0, FAST, scene=f"scattered_{i}") for i in range(13)]
+    assert [table.name for table in target_tables(steps(*runs))] == ["fixed-target-rows"]
+    assert len(target_tables(steps(*runs[:12]))) == 2
+
+
 def test_csv_holds_infinity_and_people_read_never():
     detail = target_tables(steps(measured("kbga", 0, [])))[1]
     assert detail.detail
