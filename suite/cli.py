@@ -592,6 +592,23 @@ def results(
         typer.echo(path)
 
 
+@app.command()
+def report(
+    store: StoreArgument,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", help="Page to write: .html.")
+    ] = Path("report.html"),
+) -> None:
+    """Write a report: one page with tables, charts and pictures that opens without a network.
+
+    Example: kbga-bench report out/paper.db -o report.html
+    """
+    from suite.report.html.page import write_report
+
+    write_report(store, output)
+    typer.echo(output)
+
+
 def main() -> None:
     """Run the command; errors that users can mend are one line and exit code 2."""
     warnings.showwarning = _show_warning

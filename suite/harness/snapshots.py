@@ -136,7 +136,7 @@ def _wanted(matrix: Matrix) -> list[Cell]:
     return sorted(cells, key=lambda cell: able.index(cell.variant))
 
 
-def _again(cell: Cell, row: Mapping[str, Any], matrix: Matrix) -> RunRecord:
+def _again(cell: Cell, row: Mapping[Any, Any], matrix: Matrix) -> RunRecord:
     last, best = int(row["generations"]), row["generation_of_best"]
     if cell.budget.wall_s is not None:
         cell = replace(cell, budget=Budget(generations=last))
@@ -144,7 +144,7 @@ def _again(cell: Cell, row: Mapping[str, Any], matrix: Matrix) -> RunRecord:
     return run_isolated(cell, matrix.limits, warmth_for([cell], matrix.limits), snapshots_of=shown)
 
 
-def _same(record: RunRecord, row: Mapping[str, Any], path: Any) -> bool:
+def _same(record: RunRecord, row: Mapping[Any, Any], path: Any) -> bool:
     if not record.snapshots or record.status != row["status"]:
         return False
     if path is None or record.path is None:
