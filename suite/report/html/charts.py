@@ -23,7 +23,12 @@ HIGHEST = 1e6
 """Per cent: stands for no path, above every chart."""
 
 DIGITS = 4
-POINTS = 200
+POINTS = 120
+"""Places on the horizontal axis of shares."""
+
+LINES_AT_MOST = 480
+"""Scenes times planners of a chart: the page must stay small enough to be sent."""
+
 ALL_SCENES = "all scenes"
 INK, RULES = "#1b1f24", "#d8dee4"
 
@@ -35,6 +40,7 @@ class Chart:
     scenes, clocks, planners : what there is to choose from; clocks from name to label.
     lines : plotly's traces as plain data, with the ``scene``, ``clock`` and ``planner`` of each.
     layouts : plotly's layout for each clock.
+    left_out : number of scenes that the page has no room for.
     """
 
     scenes: list[str]
@@ -42,6 +48,7 @@ class Chart:
     planners: list[str]
     lines: list[dict[str, Any]]
     layouts: dict[str, Any]
+    left_out: int
 
     @property
     def data(self) -> dict[str, Any]:
@@ -57,7 +64,9 @@ def convergence_chart(steps: Steps, planners: dict[str, int]) -> Chart | None:
     steps : Steps
     planners : mapping from name to number
     """
-    drawn = _drawable(steps, planners)
+    scenes, few, left_out = _shown(steps, planners)
+    wanted = steps.runs["place"].isin(scenes) & steps.runs["variant"].isin(few)
+    drawn = only(steps, wanted.to_numpy(dtype=bool))
     lines: list[dict[str, Any]] = []
     layouts = {}
     for clock, (_, label, unit, shift) in CLOCKS.items():
@@ -71,12 +80,11 @@ def convergence_chart(steps: Steps, planners: dict[str, int]) -> Chart | None:
             look = appearance(planners[planner])
             lines += [
                 {"scene": scene, "clock": clock, "planner": planner, "trace": trace}
-                for trace in _band_traces(planner, look, grid * unit, 100.0 * band, label)
+                for trace in _band_traces(planner, look, grid * unit, 100.0 * band)
             ]
         layouts[clock] = _gap_layout(label, grid * unit, bands.values())
-    return _chart(
-        lines, layouts, {clock: label for clock, (_, label, *_) in CLOCKS.items()}, planners
-    )
+    labels = {clock: label for clock, (_, label, *_) in CLOCKS.items()}
+    return _chart(lines, layouts, labels, planners, left_out)
 
 
 def ecdf_chart(steps: Steps, planners: dict[str, int]) -> Chart | None:
@@ -87,23 +95,23 @@ def ecdf_chart(steps: Steps, planners: dict[str, int]) -> Chart | None:
     steps : Steps
     planners : mapping from name to number
     """
-    drawn = _drawable(steps, planners)
+    scenes, few, left_out = _shown(steps, planners)
+    groups = _columns(steps, scenes, few)
     lines: list[dict[str, Any]] = []
     layouts = {}
     for clock, (label, unit) in ECDF_CLOCKS.items():
-        reached = unit * np.array([first_within(drawn, clock, target) for target in TARGETS])
+        reached = unit * np.array([first_within(steps, clock, target) for target in TARGETS])
         finite = reached[np.isfinite(reached) & (reached > 0.0)]
         if not len(finite):
             continue
         grid = np.geomspace(0.8 * finite.min(), max(1.25 * finite.max(), 10 * finite.min()), POINTS)
-        for (scene, planner), columns in _columns(drawn).items():
+        for (scene, planner), columns in groups.items():
             trace = _ecdf_trace(planner, appearance(planners[planner]), grid, reached[:, columns])
             if trace is not None:
                 lines.append({"scene": scene, "clock": clock, "planner": planner, "trace": trace})
         layouts[clock] = _share_layout(label, grid)
-    return _chart(
-        lines, layouts, {clock: label for clock, (label, _) in ECDF_CLOCKS.items()}, planners
-    )
+    labels = {clock: label for clock, (label, _) in ECDF_CLOCKS.items()}
+    return _chart(lines, layouts, labels, planners, left_out)
 
 
 def _chart(
@@ -111,6 +119,7 @@ def _chart(
     layouts: dict[str, Any],
     labels: dict[str, str],
     planners: dict[str, int],
+    left_out: int,
 ) -> Chart | None:
     if not lines:
         return None
@@ -121,51 +130,44 @@ def _chart(
         [planner for planner in planners if planner in drawn],
         lines,
         layouts,
+        left_out,
     )
 
 
-def _drawable(steps: Steps, planners: dict[str, int]) -> Steps:
-    """The runs of as many scenes and planners as can be chosen from."""
-    scenes = steps.runs["place"].drop_duplicates()[:SCENES_AT_MOST]
+def _shown(steps: Steps, planners: dict[str, int]) -> tuple[list[str], list[str], int]:
+    """Scenes and planners to choose from, and the number of scenes that there is no room for."""
     few = [name for name, number in planners.items() if number < PLANNERS_AT_MOST]
-    wanted = steps.runs["place"].isin(scenes) & steps.runs["variant"].isin(few)
-    return only(steps, wanted.to_numpy(dtype=bool))
+    scenes = list(steps.runs.loc[~np.isnan(steps.optimum), "place"].drop_duplicates())
+    room = min(SCENES_AT_MOST, LINES_AT_MOST // max(len(few), 1))
+    return scenes[:room], few, max(len(scenes) - room, 0)
 
 
-def _columns(steps: Steps) -> dict[tuple[str, str], NDArray[np.int64]]:
-    """Numbers of the runs of each planner, in all scenes with an optimum and in each of them."""
-    known = steps.runs[~np.isnan(steps.optimum)]
+def _columns(
+    steps: Steps, scenes: list[str], planners: list[str]
+) -> dict[tuple[str, str], NDArray[np.int64]]:
+    """Numbers of the runs of each planner, in all scenes with an optimum and in each shown one."""
+    known = steps.runs[~np.isnan(steps.optimum) & steps.runs["variant"].isin(planners)]
     found = {
         (ALL_SCENES, str(name)): group.index.to_numpy()
         for name, group in known.groupby("variant", sort=False)
     }
     if known["place"].nunique() < 2:
         return found
-    groups = known.groupby(["place", "variant"], sort=False)
+    groups = known[known["place"].isin(scenes)].groupby(["place", "variant"], sort=False)
     return found | {(str(s), str(v)): group.index.to_numpy() for (s, v), group in groups}
 
 
-def _band_traces(
-    planner: str, look: Appearance, x: Array, band: Array, label: str
-) -> list[dict[str, Any]]:
+def _band_traces(planner: str, look: Appearance, x: Array, band: Array) -> list[dict[str, Any]]:
     """Quartiles and median of one planner, from where half of its runs have a path."""
     low, middle, high = np.clip(band, LEAST_GAP, HIGHEST)
     began = np.isfinite(band[0])
     if not began.any():
         return []
     kept = began & _corners(low, middle, high)
-    unit = label.split("(")[-1].rstrip(")") if "(" in label else label
     nothing = {"x": _rounded(x[kept]), "hoverinfo": "skip", "mode": "lines"}
     thin = {"width": 0, "shape": "hv", "color": look.colour}
-    has_path = kept & np.isfinite(band[1])
-    median = go.Scatter(
-        x=_rounded(x[has_path]),
-        y=_rounded(middle[has_path]),
-        name=planner,
-        mode="lines",
-        line={"color": look.colour, "dash": look.dash, "width": 2, "shape": "hv"},
-        hovertemplate=f"{planner}: %{{y:.3g}} % after %{{x:.3g}} {unit}<extra></extra>",
-    )
+    has_path = np.isfinite(band[1])
+    median = _line(planner, look, x[has_path], middle[has_path])
     traces = [
         go.Scatter(y=_rounded(low[kept]), line=thin, **nothing),
         go.Scatter(
@@ -175,9 +177,8 @@ def _band_traces(
             fillcolor=_see_through(look.colour),
             **nothing,
         ),
-        median,
     ]
-    return [trace.to_plotly_json() for trace in traces]
+    return [*(trace.to_plotly_json() for trace in traces), median]
 
 
 def _ecdf_trace(
@@ -188,14 +189,18 @@ def _ecdf_trace(
     if not len(mine):
         return None
     share = 100.0 * np.searchsorted(mine, grid, side="right") / len(mine)
-    kept = _corners(share)
+    return _line(planner, look, grid, share)
+
+
+def _line(planner: str, look: Appearance, x: Array, y: Array) -> dict[str, Any]:
+    # With every place on the axis, not the steps alone: numbers are shown where there is a point.
     trace = go.Scatter(
-        x=_rounded(grid[kept]),
-        y=_rounded(share[kept]),
+        x=_rounded(x),
+        y=_rounded(y),
         name=planner,
         mode="lines",
         line={"color": look.colour, "dash": look.dash, "width": 2, "shape": "hv"},
-        hovertemplate=f"{planner}: %{{y:.3g}} % reached by %{{x:.3g}}<extra></extra>",
+        hovertemplate="%{y:.3g} %",
     )
     return dict(trace.to_plotly_json())
 
@@ -225,10 +230,17 @@ def _layout(label: str, x: Array, y_axis: dict[str, Any]) -> dict[str, Any]:
     rules = {"gridcolor": RULES, "linecolor": INK, "zeroline": False, "automargin": True}
     ends = [float(np.log10(x[0])), float(np.log10(x[-1]))]
     layout = go.Layout(
-        xaxis={"title": {"text": label}, "type": "log", "range": ends, "dtick": 1, **rules},
+        xaxis={
+            "title": {"text": label},
+            "type": "log",
+            "range": ends,
+            "dtick": 1,
+            "hoverformat": ".3g",
+            **rules,
+        },
         yaxis={**y_axis, **rules},
         showlegend=False,
-        hovermode="closest",
+        hovermode="x unified",
         dragmode=False,
         margin={"l": 56, "r": 12, "t": 12, "b": 48},
         font={"family": "system-ui, sans-serif", "size": 13, "color": INK},

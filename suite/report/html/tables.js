@@ -1,6 +1,8 @@
 "use strict";
 // Tables: a click on a heading sorts by it, a filter keeps the rows that have all its words.
 (() => {
+  document.querySelector("[data-no-script]").hidden = true;
+
   const collator = new Intl.Collator("en", { numeric: true });
 
   // A number to sort by: the cell's own, or the one that its text begins with ("0.25 (13 of 20)").
