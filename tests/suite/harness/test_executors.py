@@ -171,6 +171,7 @@ def test_a_cluster_that_is_lost_says_how_to_go_on():
         record_of(future, make_cell())
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_dies_ends_the_matrix_and_keeps_its_rows(cluster, matrix_file, tmp_path):
     def kill_scheduler(progress):
         if progress.done == 1:
