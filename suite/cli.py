@@ -38,6 +38,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "compare": reports.compare,
     "export": reports.export,
     "results": reports.results,
+    "report": reports.report,
 }
 for name, command in COMMANDS.items():
     app.command(name)(command)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from suite.planner import Budget, Improvement, PlanStatus
+from suite.planner import Budget, Improvement, PlanStatus, Snapshot
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -135,6 +135,7 @@ class RunRecord:
     details : further numbers that the planner gave.
     stderr : the last lines that the process wrote there, if the run failed.
     simulation : of a simulated run, as :func:`suite.dynamic.plain.as_data` gives it.
+    snapshots : of the generations that were asked for; none in a measured run.
     """
 
     cell: Cell
@@ -165,6 +166,7 @@ class RunRecord:
     details: Mapping[str, float] = field(default_factory=dict)
     stderr: str = ""
     simulation: Mapping[str, Any] | None = None
+    snapshots: tuple[Snapshot, ...] = ()
 
 
 def canonical_json(value: Any) -> str:

@@ -67,7 +67,8 @@ def plan(
         settings=parse_settings(settings or []),
         budget=Budget(wall_s, generations, checks),
     )
-    recorder = Recorder(keep_snapshots=plot is not None)
+    # Of the first population only: more would slow down the run that is timed.
+    recorder = Recorder(snapshot_of=lambda generation: plot is not None and generation == 0)
     if plot is None:
         record = run_cell(cell, recorder=recorder)
     else:

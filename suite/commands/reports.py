@@ -1,4 +1,4 @@
-"""Commands about what is in a store: tables, compare, export, results.
+"""Commands about what is in a store: tables, compare, export, results, report.
 
 Floors above the planner interface are imported inside the commands: pandas and matplotlib take
 longer to import than ``list`` takes to answer.
@@ -135,3 +135,19 @@ def results(
 
     for path in write_results(store, directory, leave_out={kind.value for kind in leave_out or []}):
         typer.echo(path)
+
+
+def report(
+    store: StoreArgument,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", help="Page to write: .html.")
+    ] = Path("report.html"),
+) -> None:
+    """Write a report: one page with tables, charts and pictures that opens without a network.
+
+    Example: kbga-bench report out/paper.db -o report.html
+    """
+    from suite.report.html.page import write_report
+
+    write_report(store, output)
+    typer.echo(output)

@@ -57,12 +57,18 @@ def run(
         list[Path] | None,
         typer.Option(metavar="STORE", help="First take in the rows of another store; repeatable."),
     ] = None,
+    snapshots: Annotated[
+        int,
+        typer.Option(min=0, help="Keep the populations of so many runs, for the report's player."),
+    ] = 40,
     plugin: PluginOption = None,
 ) -> None:
     """Run what a store still lacks of a matrix, each run in a process of its own.
 
-    It can be stopped at any time and started again: only the runs in flight are lost. Exit code 0
-    if all is done, 1 if rows of other stores are in conflict, 130 after Ctrl-C.
+    It can be stopped at any time and started again: only the runs in flight are lost. At the end
+    some runs of planners with a population are done again, outside any clock, to keep it.
+
+    Exit code 0 if all is done, 1 if rows of other stores are in conflict, 130 after Ctrl-C.
 
     Example: kbga-bench run paper-static --store out/paper.db --jobs 2
 
@@ -71,6 +77,7 @@ def run(
     from suite.harness.display import Display
     from suite.harness.matrix import load_matrix
     from suite.harness.run import Which, run_matrix
+    from suite.harness.snapshots import keep_snapshots
     from suite.store import open_store
 
     use_plugins(plugin)
@@ -100,6 +107,7 @@ def run(
                     executor=cluster,
                     on_progress=display,
                 )
+            kept = keep_snapshots(wanted, opened, most=snapshots)
         except KeyboardInterrupt as interrupt:
             typer.echo(
                 "Stopped. All finished runs are kept; to go on, give the same command again.",
@@ -108,7 +116,7 @@ def run(
             for note in getattr(interrupt, "__notes__", ()):
                 typer.echo(note, err=True)
             raise typer.Exit(130) from None
-    typer.echo(end.summary())
+    typer.echo(" ".join(filter(None, (end.summary(), kept.summary()))))
     raise typer.Exit(0 if clean else 1)
 
 

@@ -12,7 +12,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from multiprocessing.connection import wait
@@ -63,7 +63,9 @@ class _StoppedError(Exception):
     """The runs in flight were killed before this one had a process."""
 
 
-def run_isolated(cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
+def run_isolated(
+    cell: Cell, limits: Limits, warmth: Warmth, *, snapshots_of: Collection[int] = ()
+) -> RunRecord:
     """Run one cell in a process of its own. Safe to call from several threads.
 
     Parameters
@@ -73,6 +75,8 @@ def run_isolated(cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
         When to kill it.
     warmth : Warmth
         For the fork server, if this call is the first to need one.
+    snapshots_of : collection of int
+        Generations of which the record is to have snapshots; none in a measured run.
 
     Returns
     -------
@@ -87,7 +91,7 @@ def run_isolated(cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
     """
     started_at = datetime.now(UTC).isoformat(timespec="seconds")
     try:
-        with own_core() as core, _started(cell, warmth, core) as child:
+        with own_core() as core, _started(cell, warmth, core, snapshots_of) as child:
             record = _outcome(child, limits)
     except _StoppedError:
         return RunRecord(cell, PlanStatus.CRASHED, "was stopped before it began.")
@@ -150,13 +154,15 @@ class _Child:
 
 
 @contextlib.contextmanager
-def _started(cell: Cell, warmth: Warmth, core: int | None) -> Iterator[_Child]:
+def _started(
+    cell: Cell, warmth: Warmth, core: int | None, snapshots_of: Collection[int]
+) -> Iterator[_Child]:
     """A process that runs the cell; it and its descendants are gone afterwards."""
     receiver, sender = _CONTEXT.Pipe(duplex=False)
     error_reader, error_writer = _CONTEXT.Pipe(duplex=False)
     with receiver, error_reader:
         with sender, error_writer:
-            process = _start((cell, sender, error_writer, core), warmth)
+            process = _start((cell, sender, error_writer, core, snapshots_of), warmth)
         child = _Child(cell, process, Inbox(receiver), Tail(error_reader))
         try:
             yield child

@@ -5,7 +5,6 @@ import subprocess
 import sys
 import time
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
-from contextlib import suppress
 from types import SimpleNamespace
 
 import dask
@@ -127,13 +126,17 @@ def test_an_interruption_ends_the_runs_on_the_workers(cluster, matrix_file, tmp_
 
 
 def family(worker):
-    """What descends from a worker and still runs: the fork server, and runs."""
-    found = []
-    for process in worker.children(recursive=True):
-        with suppress(psutil.Error):
-            if "forkserver" in " ".join(process.cmdline()):
-                found.append(process.pid)
-    return found
+    """What descends from a worker and still runs."""
+    return [p for p in worker.children(recursive=True) if is_of_the_server(p)]
+
+
+def is_of_the_server(process):
+    try:
+        is_dead = process.status() == psutil.STATUS_ZOMBIE
+        return not is_dead and "forkserver" in " ".join(process.cmdline())
+    except psutil.Error:
+        # It ended between the two questions.
+        return False
 
 
 def test_a_scheduler_that_is_not_there_is_an_error_before_anything_is_written(
