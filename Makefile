@@ -7,7 +7,7 @@ STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
 
-.PHONY: setup browser bench test test-slow torture lint perf clean
+.PHONY: setup browser bench test test-slow torture lint perf harness results clean
 
 setup: $(STAMP)
 
@@ -53,6 +53,32 @@ perf: setup
 	$(BIN)/python -m pytest -q tests/perf --benchmark-only --benchmark-json=out/performance.json \
 		--benchmark-columns=median,max,rounds --benchmark-sort=name
 	$(BIN)/python -m tests.perf.performance_table out/performance.json results/performance
+
+# Everything in results/ that comes from a matrix: half an hour on two cores, nothing else running.
+CAMPAIGNS := paper-static paper-dynamic resolution obstacles kbga-rounds ablation mutation-rate \
+	penalty first-population tuning
+PAPER := paper-static paper-dynamic resolution
+leave-ablation := --leave-out traces
+leave-mutation-rate := --leave-out traces
+leave-penalty := --leave-out traces
+leave-tuning := --leave-out traces
+leave-paper-dynamic := --leave-out paths
+
+results: $(CAMPAIGNS:%=results-%)
+	rm -f out/paper.db
+	$(BIN)/kbga-bench merge out/paper.db $(PAPER:%=out/%.db)
+	$(BIN)/kbga-bench tables out/paper.db --format markdown --output results/paper
+	$(BIN)/kbga-bench tables out/paper.db --format csv --output results/paper
+	$(BIN)/kbga-bench report out/paper.db -o results/paper/report.html
+
+$(CAMPAIGNS:%=results-%): results-%: setup
+	mkdir -p out
+	$(BIN)/kbga-bench run $* --store out/$*.db --jobs $(JOBS)
+	$(BIN)/kbga-bench results out/$*.db results/$* $(leave-$*)
+
+# What the harness itself costs. On a machine that does nothing else.
+harness: setup
+	$(BIN)/python -m tests.perf.harness results/harness $(ARGS)
 
 clean:
 	rm -rf .venv out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

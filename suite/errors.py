@@ -23,3 +23,7 @@ class MatrixError(KbgaBenchError):
 
 class StoreError(KbgaBenchError):
     """A result store can't be opened, read or written."""
+
+
+class HarnessError(KbgaBenchError):
+    """The harness can't go on with a matrix."""

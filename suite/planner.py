@@ -30,6 +30,9 @@ from numpy.typing import NDArray
 from suite.errors import ContractError
 from suite.scene import Query, Scene
 
+INTERFACE = 1
+"""Version of what this file promises; it rises when a planner written for it would break."""
+
 
 class PlanStatus(StrEnum):
     """How a run ended, in a word."""
@@ -209,11 +212,14 @@ class Planner(ABC):
     name : the word under which users ask for it; the entry point has the same name.
     Settings : a frozen dataclass whose fields all have defaults.
     abilities : what it can do.
+    interface : the version of this file that it is written for. Say it in a plugin that is
+        installed by others: one for another version is then refused, with that reason.
     """
 
     name: ClassVar[str]
     Settings: ClassVar[type[Any]] = NoSettings
     abilities: ClassVar[Abilities] = Abilities()
+    interface: ClassVar[int] = INTERFACE
 
     def __init__(self, settings: Any = None) -> None:
         self.settings = self.Settings() if settings is None else settings

@@ -98,7 +98,7 @@ class Cell:
         ]
         if self.world is not None:
             content.append(self.world.as_dict)
-        return hashlib.sha256(canonical_json(content).encode()).hexdigest()[:32]
+        return short_hash(content)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -178,3 +178,14 @@ def canonical_json(value: Any) -> str:
     '{"a":[2.0,null],"b":1}'
     """
     return json.dumps(value, sort_keys=True, separators=(",", ":"), default=str)
+
+
+def short_hash(value: Any) -> str:
+    """Hash of plain data: 32 hexadecimal digits, the same on every machine.
+
+    Examples
+    --------
+    >>> short_hash({"b": 1, "a": 2}) == short_hash({"a": 2, "b": 1})
+    True
+    """
+    return hashlib.sha256(canonical_json(value).encode()).hexdigest()[:32]

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from suite.errors import StoreError
 from suite.planner import Snapshot
-from suite.record import Cell, RunRecord, canonical_json
+from suite.record import Cell, RunRecord, canonical_json, short_hash
 
 APPLICATION_ID = 0x4B424741  # "KBGA"
 SCHEMA_VERSION = 2
@@ -45,7 +45,7 @@ CREATE TABLE runs (
     wall_s REAL, time_to_best_s REAL, cpu_s REAL, cpu_to_best_s REAL,
     load REAL, contended INTEGER,
     planner TEXT NOT NULL, distribution TEXT NOT NULL, version TEXT NOT NULL,
-    settings TEXT NOT NULL, world_settings TEXT, cold INTEGER NOT NULL,
+    settings TEXT NOT NULL, settings_hash TEXT NOT NULL, world_settings TEXT, cold INTEGER NOT NULL,
     budget_wall_s REAL, budget_generations INTEGER, budget_checks INTEGER,
     scene_source TEXT NOT NULL, scene_hash TEXT NOT NULL,
     host TEXT, started_at TEXT, details TEXT NOT NULL, stderr TEXT NOT NULL
@@ -463,6 +463,7 @@ def _as_row(record: RunRecord) -> dict[str, Any]:
     row["key"] = cell.key
     row["status"] = str(record.status)
     row["settings"] = canonical_json(cell.settings)
+    row["settings_hash"] = short_hash(cell.settings)
     world = cell.world
     row["world"] = None if world is None else world.name
     row["world_settings"] = None if world is None else canonical_json(world.settings)

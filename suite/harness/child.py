@@ -1,19 +1,24 @@
 """What happens in the process of one run: cut off from the terminal and from its parent's death."""
 
+import contextlib
 import fcntl
 import multiprocessing
 import os
 import random
 import select
 import signal
-from collections.abc import Collection
-from dataclasses import replace
+import traceback
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
+from multiprocessing import forkserver
 from multiprocessing.connection import Connection
 
 import numpy as np
+from numpy.random import mtrand
 
 from suite.harness.cell import run_cell
-from suite.planner import Recorder
+from suite.harness.family import adopt_orphans, has_children
+from suite.planner import PlanStatus, Recorder
 from suite.record import Cell, RunRecord
 
 PLANNING = "planning"
@@ -23,10 +28,22 @@ ORPHAN_S = 3600
 """Where the kernel can't end a run whose harness died, it ends after this time."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Outcome:
+    """The last message of a process.
+
+    alone : whether nothing descends from the process that would outlive it.
+    """
+
+    record: RunRecord
+    alone: bool
+
+
 def run_in_child(
     cell: Cell,
-    messages: "Connection[str | RunRecord, None]",
+    messages: "Connection[str | Outcome, None]",
     stderr: "Connection[None, None]",
+    core: int | None,
     snapshots_of: Collection[int] = (),
 ) -> None:
     """Run a cell and send what came of it; the target of the process of one run.
@@ -35,27 +52,63 @@ def run_in_child(
     ----------
     cell : Cell
     messages : Connection
-        Takes PLANNING, then the RunRecord.
+        Takes PLANNING, then the Outcome.
     stderr : Connection
         Takes what the process writes to its standard error.
+    core : int, optional
+        The processor to stay on.
     snapshots_of : collection of int
         Generations of which the record is to have snapshots.
     """
+    process = os.getpid()
     _become_own_group()
     _redirect_output(stderr.fileno())
+    stderr.close()
     _die_with_parent()
+    _pin(core)
     _seed_globals(cell)
     recorder = Recorder(snapshot_of=snapshots_of.__contains__)
-    record = run_cell(cell, recorder=recorder, before_plan=lambda: messages.send(PLANNING))
-    messages.send(replace(record, snapshots=tuple(recorder.snapshots)))
+    record = _record(cell, recorder, lambda: messages.send(PLANNING))
+    # A planner that forks may come back twice.
+    if os.getpid() == process:
+        record = replace(record, snapshots=tuple(recorder.snapshots))
+        messages.send(Outcome(record, alone=not has_children()))
     # Without the interpreter's farewell: destructors of a planner's libraries may hang or crash,
     # and threads that it left running would be waited for.
     os._exit(0)
 
 
+def _record(cell: Cell, recorder: Recorder, before_plan: Callable[[], None]) -> RunRecord:
+    try:
+        return run_cell(cell, recorder=recorder, before_plan=before_plan)
+    except BaseException as error:
+        # KeyboardInterrupt too: nobody is at the keyboard of this process, a planner raised it.
+        reason = "".join(traceback.format_exception_only(error)).strip()
+        return RunRecord(cell, PlanStatus.ERROR, reason)
+
+
 def _become_own_group() -> None:
     """Out of the terminal's reach (Ctrl-C is the harness's), and killable with all descendants."""
     os.setsid()
+    # The fork server ignores them.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    adopt_orphans()
+    # What is left of the fork server's own pipe: it tells the server that somebody needs it, which
+    # is not for a run to say, and the server dies of what is written into it.
+    server = forkserver._forkserver
+    alive = getattr(server, "_forkserver_alive_fd", None)
+    if alive is not None:
+        os.close(alive)
+        vars(server)["_forkserver_alive_fd"] = None
+
+
+def _pin(core: int | None) -> None:
+    # A processor can be taken away from this process after the harness looked.
+    with contextlib.suppress(OSError):
+        if core is not None:
+            os.sched_setaffinity(0, {core})
 
 
 def _redirect_output(stderr: int) -> None:
@@ -91,6 +144,7 @@ def _seed_globals(cell: Cell) -> None:
 
     All children inherit the server's state: without this they would all draw the same numbers.
     """
-    seed = int(cell.key[:8], 16)
+    seed = int(cell.key, 16)
     random.seed(seed)
-    np.random.seed(seed)  # noqa: NPY002
+    # Of the kind that numpy starts with: a plugin's own np.random.seed then still works.
+    mtrand.set_bit_generator(np.random.MT19937(np.random.SeedSequence(seed)))

@@ -1,6 +1,5 @@
 """What a command would run, and about how long, before it runs anything."""
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,6 +7,7 @@ from statistics import median
 
 import pandas as pd
 
+from suite.harness.cores import honest_jobs
 from suite.harness.matrix import Matrix
 from suite.harness.run import Which, to_run
 from suite.record import Cell
@@ -96,7 +96,7 @@ def forecast_matrix(
     cells = matrix.cells(quick=quick)
     runs = read_runs(store) if store.exists() else NOTHING
     there = dict(zip(runs["key"], runs["status"], strict=True))
-    return forecast(len(cells), to_run(cells, there, which), runs, jobs or os.cpu_count() or 1)
+    return forecast(len(cells), to_run(cells, there, which), runs, jobs or honest_jobs())
 
 
 def forecast(wanted: int, cells: Sequence[Cell], runs: pd.DataFrame, jobs: int) -> Forecast:

@@ -8,39 +8,59 @@ import contextlib
 import multiprocessing
 import multiprocessing.forkserver
 import os
-import pickle
 import signal
 import sys
 import threading
 import time
-from collections import deque
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from multiprocessing.connection import Connection, wait
+from multiprocessing.connection import wait
+from multiprocessing.context import ForkServerProcess
 from typing import Any
 
-import psutil
-
-from suite.harness.child import run_in_child
+from suite.errors import HarnessError
+from suite.harness.child import PLANNING, Outcome, run_in_child
+from suite.harness.cores import own_core
+from suite.harness.family import kill_children, kill_family, kill_group
 from suite.harness.machine import host_name
 from suite.harness.matrix import Limits
+from suite.harness.memory import MemoryWatch
+from suite.harness.pipes import GarbledError, Inbox, Tail
 from suite.harness.warm import Warmth
 from suite.planner import PlanStatus
 from suite.record import Cell, RunRecord
 
-STDERR_LINES = 20
-STDERR_BYTES = 16_384
 REAP_S = 5.0
 """What a killed process may take to be gone; longer only in the kernel's uninterruptible sleep."""
+
+ANSWER_S = 0.5
+"""A fork server that takes longer to start a process is still warming up."""
+
+STARTS = 3
+"""A planner that kills its parent takes the fork server away from the others: they try again."""
 
 _CONTEXT = multiprocessing.get_context("forkserver")
 
 # multiprocessing's bookkeeping of children polls all of them whenever one is started, and two
-# threads that poll one child race for its exit code; so starting and reaping take turns.
+# threads that poll one child race for its exit code; so starting and reaping take turns. Under the
+# lock, the children of the fork server are the runs in flight, and orphans of others.
 _BOOKKEEPING = threading.Lock()
 
-_running: set[int] = set()
+
+@dataclass(slots=True, eq=False)
+class _Fleet:
+    """The runs of this process that are in flight, and how often they were told to stop."""
+
+    pids: set[int] = field(default_factory=set)
+    stops: int = 0
+
+
+_fleet = _Fleet()
+
+
+class _StoppedError(Exception):
+    """The runs in flight were killed before this one had a process."""
 
 
 def run_isolated(
@@ -61,12 +81,21 @@ def run_isolated(
     Returns
     -------
     RunRecord
-        Always: a process that hangs is TIMED_OUT, one that dies is CRASHED.
+        Always: a process that hangs is TIMED_OUT, one that takes too much memory OUT_OF_MEMORY,
+        one that dies CRASHED.
+
+    Raises
+    ------
+    HarnessError
+        If the system starts no process.
     """
     started_at = datetime.now(UTC).isoformat(timespec="seconds")
-    with _started(cell, warmth, snapshots_of) as child:
-        record = _watch(child, limits)
-    if record.status in (PlanStatus.TIMED_OUT, PlanStatus.CRASHED):
+    try:
+        with own_core() as core, _started(cell, warmth, core, snapshots_of) as child:
+            record = _outcome(child, limits)
+    except _StoppedError:
+        return RunRecord(cell, PlanStatus.CRASHED, "was stopped before it began.")
+    if record.host is None:
         record = replace(record, started_at=started_at, host=host_name())
     if record.status in (PlanStatus.SOLVED, PlanStatus.INFEASIBLE, PlanStatus.EXHAUSTED):
         return record
@@ -79,18 +108,41 @@ def start_server(warmth: Warmth) -> None:
         multiprocessing.forkserver.ensure_running()
 
 
+def stop_server() -> None:
+    """End the fork server, when no run is in flight: the next run starts another, newly warmed."""
+    server = multiprocessing.forkserver._forkserver
+    with _BOOKKEEPING:
+        pid = _server_pid()
+        if pid is not None:
+            # It may be in the middle of its warming, which can take minutes.
+            kill_family(pid)
+        server._stop()  # type: ignore[attr-defined]
+
+
 def kill_running() -> None:
     """Kill all runs of this process that are in flight; their callers get CRASHED records."""
-    for pid in list(_running):
-        _kill(pid)
+    _fleet.stops += 1
+    if _BOOKKEEPING.acquire(timeout=ANSWER_S):
+        _BOOKKEEPING.release()
+    elif (server := _server_pid()) is not None:
+        kill_family(server)
+    for pid in list(_fleet.pids):
+        kill_family(pid)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(slots=True, eq=False)
 class _Child:
+    """alone : whether the process said at its end that nothing descends from it."""
+
     cell: Cell
-    process: Any
-    messages: "Connection[None, str | RunRecord]"
-    stderr: "_Tail"
+    process: ForkServerProcess
+    inbox: Inbox
+    stderr: Tail
+    alone: bool = False
+
+    @property
+    def pid(self) -> int:
+        return self.process.ident or 0
 
     def reap(self, timeout_s: float) -> int | None:
         """Exit code of the process, negative for a signal; None if it still runs."""
@@ -98,98 +150,101 @@ class _Child:
             return None
         with _BOOKKEEPING:
             self.process.join(0)
-            code: int | None = self.process.exitcode
-            return code
-
-
-class _Tail:
-    """The last part of what a process writes to its standard error."""
-
-    def __init__(self, pipe: "Connection[Any, Any]") -> None:
-        self.pipe = pipe
-        self._blocks: deque[bytes] = deque()
-        self._size = 0
-        os.set_blocking(pipe.fileno(), False)
-
-    def read(self) -> bool:
-        """Take what is there; False at the end of the file."""
-        try:
-            block = os.read(self.pipe.fileno(), STDERR_BYTES)
-        except BlockingIOError:
-            return True
-        self._blocks.append(block)
-        self._size += len(block)
-        while self._size - len(self._blocks[0]) > STDERR_BYTES:
-            self._size -= len(self._blocks.popleft())
-        return bool(block)
-
-    def last_lines(self) -> str:
-        text = b"".join(self._blocks)[-STDERR_BYTES:].decode(errors="replace")
-        return "\n".join(text.splitlines()[-STDERR_LINES:])
+            return self.process.exitcode
 
 
 @contextlib.contextmanager
-def _started(cell: Cell, warmth: Warmth, snapshots_of: Collection[int]) -> Iterator[_Child]:
+def _started(
+    cell: Cell, warmth: Warmth, core: int | None, snapshots_of: Collection[int]
+) -> Iterator[_Child]:
     """A process that runs the cell; it and its descendants are gone afterwards."""
     receiver, sender = _CONTEXT.Pipe(duplex=False)
     error_reader, error_writer = _CONTEXT.Pipe(duplex=False)
     with receiver, error_reader:
-        # The first start, and one after the death of the server, makes a new server.
-        with sender, error_writer, _BOOKKEEPING, _server_environment(warmth):
-            process = _CONTEXT.Process(
-                target=run_in_child, args=(cell, sender, error_writer, snapshots_of)
-            )
-            process.start()
-        pid: int = process.ident or 0
-        _running.add(pid)
-        child = _Child(cell, process, receiver, _Tail(error_reader))
+        with sender, error_writer:
+            process = _start((cell, sender, error_writer, core, snapshots_of), warmth)
+        child = _Child(cell, process, Inbox(receiver), Tail(error_reader))
         try:
             yield child
         finally:
-            _kill_group(pid)
-            if child.reap(REAP_S) is None:
-                _kill(pid)
-            _running.discard(pid)
+            _end(child)
 
 
-def _watch(child: _Child, limits: Limits) -> RunRecord:
-    """Wait for the record, the end of the process, or the end of our patience."""
+def _start(arguments: tuple[Any, ...], warmth: Warmth) -> ForkServerProcess:
+    stops = _fleet.stops
+    for _ in range(STARTS):
+        # The first start, and one after the death of the server, makes a new server.
+        with _BOOKKEEPING, _server_environment(warmth):
+            if _fleet.stops != stops:
+                break
+            process = _CONTEXT.Process(target=run_in_child, args=arguments)
+            with contextlib.suppress(EOFError, OSError):
+                process.start()
+                _fleet.pids.add(process.ident or 0)
+                return process
+    if _fleet.stops != stops:
+        raise _StoppedError
+    raise HarnessError(
+        "no process can be started for a run. Look at the limits for processes, open files and "
+        "memory, then run the same command again: it goes on where it stopped."
+    )
+
+
+def _end(child: _Child) -> None:
+    """Kill what is left of a run, wherever it went, and take its last words."""
+    kill_group(child.pid)
+    if child.reap(REAP_S) is None:
+        kill_family(child.pid)
+    with _BOOKKEEPING:
+        _fleet.pids.discard(child.pid)
+        server = _server_pid()
+        if not child.alone and server is not None:
+            kill_children(server, REAP_S, but=_fleet.pids)
+    child.stderr.read()
+
+
+def _outcome(child: _Child, limits: Limits) -> RunRecord:
+    try:
+        return _watched(child, limits)
+    except EOFError:
+        reason = f"the process {_end_in_words(child.reap(REAP_S))}."
+        return RunRecord(child.cell, PlanStatus.CRASHED, reason)
+    except GarbledError as error:
+        reason = f"something wrote into the pipe that is the harness's ({error})."
+        return RunRecord(child.cell, PlanStatus.ERROR, reason)
+
+
+def _watched(child: _Child, limits: Limits) -> RunRecord:
+    """Wait for the record, the end of the process (EOFError), or the end of our patience."""
     phase, patience_s = "warm-up", limits.warm_up_s
     deadline = time.monotonic() + patience_s
-    pipes: list[Any] = [child.messages, child.process.sentinel, child.stderr.pipe]
+    memory = MemoryWatch(child.pid, limits.memory_bytes)
+    pipes: list[Any] = [child.inbox.pipe, child.process.sentinel, child.stderr.pipe]
     while True:
-        ready = wait(pipes, max(0.0, deadline - time.monotonic()))
+        ready = wait(pipes, max(0.0, min(deadline, memory.next_look) - time.monotonic()))
         if child.stderr.pipe in ready and not child.stderr.read():
             pipes.remove(child.stderr.pipe)
-        if child.messages in ready:
-            message = _receive(child)
-            if isinstance(message, RunRecord):
-                return message
-            if message is None:
-                return _crashed(child)
-            phase, patience_s = "plan", limits.run_s(child.cell)
-            deadline = time.monotonic() + patience_s
+        if child.inbox.pipe in ready:
+            for message in child.inbox.read():
+                if isinstance(message, Outcome):
+                    child.alone = message.alone
+                    return message.record
+                if message == PLANNING and phase == "warm-up":
+                    phase, patience_s = "plan", limits.run_s(child.cell)
+                    deadline = time.monotonic() + patience_s
         elif child.process.sentinel in ready:
-            return _crashed(child)
+            raise EOFError
+        elif (held := memory.excess()) is not None:
+            reason = f"{phase} held {held / 1e6:.0f} MB, above {limits.memory_mb:g} MB, "
+            return _killed(child, PlanStatus.OUT_OF_MEMORY, reason)
         elif time.monotonic() >= deadline:
-            _kill(child.process.pid)
-            reason = f"{phase} took more than {patience_s:g} s and was killed."
-            return RunRecord(child.cell, PlanStatus.TIMED_OUT, reason)
+            reason = f"{phase} took more than {patience_s:g} s "
+            return _killed(child, PlanStatus.TIMED_OUT, reason)
 
 
-def _receive(child: _Child) -> str | RunRecord | None:
-    """One message; None at the end of the pipe, or if something else was written into it."""
-    try:
-        message: str | RunRecord = child.messages.recv()
-    except (EOFError, OSError, pickle.UnpicklingError):
-        return None
-    return message
-
-
-def _crashed(child: _Child) -> RunRecord:
-    code = child.reap(REAP_S)
-    child.stderr.read()
-    return RunRecord(child.cell, PlanStatus.CRASHED, f"the process {_end_in_words(code)}.")
+def _killed(child: _Child, status: PlanStatus, reason: str) -> RunRecord:
+    kill_family(child.pid)
+    return RunRecord(child.cell, status, f"{reason}and was killed.")
 
 
 def _end_in_words(code: int | None) -> str:
@@ -197,28 +252,19 @@ def _end_in_words(code: int | None) -> str:
         return "closed its pipe"
     if code >= 0:
         return f"ended with exit code {code}"
+    if code == -signal.SIGKILL:
+        return "was ended by SIGKILL (not the harness's: perhaps the machine was out of memory)"
     try:
         return f"was ended by {signal.Signals(-code).name}"
     except ValueError:
         return f"was ended by signal {-code}"
 
 
-def _kill(pid: int) -> None:
-    """SIGKILL for a process and all that descends from it."""
-    family: list[psutil.Process] = []
-    # A descendant may have left the process group: the tree is read before its root is gone.
-    with contextlib.suppress(psutil.Error):
-        root = psutil.Process(pid)
-        family = [*root.children(recursive=True), root]
-    _kill_group(pid)
-    for process in family:
-        with contextlib.suppress(psutil.Error):
-            process.kill()
-
-
-def _kill_group(pid: int) -> None:
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(pid, signal.SIGKILL)
+def _server_pid() -> int | None:
+    """The fork server's process; None if there is none, or Python no longer says so here."""
+    server = multiprocessing.forkserver._forkserver
+    pid: int | None = getattr(server, "_forkserver_pid", None)
+    return pid
 
 
 def _main_module() -> tuple[str | None, str | None]:
@@ -232,7 +278,8 @@ def _main_module() -> tuple[str | None, str | None]:
 @contextlib.contextmanager
 def _server_environment(warmth: Warmth) -> Iterator[None]:
     """The settings that a fork server started now inherits; variables are put back afterwards."""
-    _CONTEXT.set_forkserver_preload([Warmth.__module__])
+    # The warm-up comes last: it leaves alone, for good, what is loaded by then.
+    _CONTEXT.set_forkserver_preload([run_in_child.__module__, Warmth.__module__])
     wanted = replace(warmth, main=_main_module()).environment()
     before = {name: os.environ.get(name) for name in wanted}
     os.environ.update(wanted)

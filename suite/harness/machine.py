@@ -3,6 +3,7 @@
 import importlib.metadata
 import os
 import platform
+import re
 import subprocess
 from collections.abc import Iterable
 from datetime import UTC, datetime
@@ -12,8 +13,30 @@ from typing import Any
 
 import psutil
 
-PACKAGES = ("kbga-bench", "numpy", "numba", "llvmlite", "shapely", "ompl", "pandas", "matplotlib")
-VARIABLES = ("OMP_NUM_THREADS", "NUMBA_DISABLE_JIT", "NUMBA_CPU_NAME", "PYTHONHASHSEED")
+from suite.harness.cores import honest_cores
+
+ONE_THREAD = dict.fromkeys(
+    (
+        "OMP_NUM_THREADS",
+        "OPENBLAS_NUM_THREADS",
+        "BLIS_NUM_THREADS",
+        "MKL_NUM_THREADS",
+        "VECLIB_MAXIMUM_THREADS",
+        "NUMEXPR_NUM_THREADS",
+        "NUMBA_NUM_THREADS",
+    ),
+    "1",
+)
+"""The environment of every run. A run has one processor: threads of libraries would only disturb
+its neighbours' timing."""
+
+VARIABLES = re.compile(
+    "(OMP|GOMP|KMP|MKL|OPENBLAS|BLIS|VECLIB|NUMEXPR|NUMBA|NPY|PYTHON|MALLOC|LD|DYLD|GLIBC)_.*"
+    "|PYTHON.*|TZ|LANG|LC_ALL"
+)
+"""Environment variables that can change what numerical code does, or how fast."""
+
+DISTRIBUTION = "kbga-bench"
 
 
 def provenance(matrix: str, distributions: Iterable[tuple[str, str]] = ()) -> dict[str, Any]:
@@ -31,6 +54,7 @@ def provenance(matrix: str, distributions: Iterable[tuple[str, str]] = ()) -> di
     dict
         Plain data.
     """
+    planners = sorted(set(distributions))
     return {
         "matrix": matrix,
         "started_at": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -38,13 +62,51 @@ def provenance(matrix: str, distributions: Iterable[tuple[str, str]] = ()) -> di
         "os": platform.platform(),
         "cpu": _cpu_model(),
         "cores": os.cpu_count(),
+        "physical_cores": psutil.cpu_count(logical=False),
+        "usable_cores": len(honest_cores()),
         "memory_bytes": psutil.virtual_memory().total,
-        "python": platform.python_version(),
-        "versions": {p: v for p in PACKAGES if (v := package_version(p)) is not None},
-        "planner_distributions": dict(sorted(set(distributions))),
+        "python": f"{platform.python_implementation()} {platform.python_version()}",
+        "versions": installed_versions([DISTRIBUTION, *(name for name, _ in planners)]),
+        "planner_distributions": dict(planners),
         "git": _git_state(),
-        "environment": {name: os.environ[name] for name in VARIABLES if name in os.environ},
+        "environment": run_environment(),
     }
+
+
+def run_environment() -> dict[str, str]:
+    """The environment variables of a run that can change its outcome or its time."""
+    environment = {**os.environ, **ONE_THREAD}
+    return {name: environment[name] for name in sorted(environment) if VARIABLES.fullmatch(name)}
+
+
+def installed_versions(roots: Iterable[str]) -> dict[str, str]:
+    """Versions of distributions, and of all that they require, and so on; extras left out.
+
+    Returns
+    -------
+    dict
+        From name, in lower case with hyphens, to version. What is not installed is not in it.
+    """
+    versions: dict[str, str] = {}
+    waiting = [_canonical(name) for name in roots]
+    while waiting:
+        name = waiting.pop()
+        if name not in versions and (version := package_version(name)) is not None:
+            versions[name] = version
+            waiting += _required(name)
+    return dict(sorted(versions.items()))
+
+
+def _required(name: str) -> list[str]:
+    lines = importlib.metadata.requires(name) or []
+    # "numpy>=2.0; python_version > '3'": the name comes first. A requirement for another system
+    # is not installed here, and so left out by itself.
+    wanted = [re.match(r"[\w.-]+", line) for line in lines if not re.search(r";.*\bextra\b", line)]
+    return [_canonical(found.group()) for found in wanted if found]
+
+
+def _canonical(name: str) -> str:
+    return re.sub(r"[-_.]+", "-", name).lower()
 
 
 def package_version(name: str) -> str | None:

@@ -69,12 +69,21 @@ class Limits:
     factor, grace_s : ``plan`` may take ``factor`` times its wall budget, and ``grace_s`` more.
     wall_s : what ``plan`` may take if it has no wall budget, seconds.
     warm_up_s : what loading and ``warm_up`` may take, compilation included, seconds.
+    memory_mb : what the run with all its processes may hold at any time, resident, 10^6 bytes. The
+        default is what computers have for each core at the least, and several times what a
+        planner needs on the largest of our scenes.
     """
 
     factor: float = 1.5
     grace_s: float = 10.0
     wall_s: float = 300.0
     warm_up_s: float = 300.0
+    memory_mb: float = 2000.0
+
+    @property
+    def memory_bytes(self) -> int:
+        """The limit of memory in bytes."""
+        return int(self.memory_mb * 1e6)
 
     def __post_init__(self) -> None:
         for field in fields(self):

@@ -8,6 +8,7 @@ A plugin may crash, hang or exit while it warms up. So each is tried in a fork f
 limit; one that fails there stays cold, and its own runs meet, and report, the same failure.
 """
 
+import atexit
 import contextlib
 import gc
 import json
@@ -16,29 +17,26 @@ import signal
 import sys
 import time
 import types
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from importlib.machinery import ModuleSpec
 from typing import Any
 
+import psutil
+
+from suite.harness.family import adopt_orphans, kill_family, kill_group
+from suite.harness.machine import ONE_THREAD
+from suite.harness.memory import MemoryWatch
 from suite.harness.prepared import build_planner, exact_optimum, prepared_scene, referee
 from suite.quiet import end_quietly
 
 VARIABLE = "KBGA_BENCH_WARM"
 
-ONE_THREAD = dict.fromkeys(
-    (
-        "OMP_NUM_THREADS",
-        "OPENBLAS_NUM_THREADS",
-        "MKL_NUM_THREADS",
-        "NUMEXPR_NUM_THREADS",
-        "NUMBA_NUM_THREADS",
-    ),
-    "1",
-)
-"""A run has one processor: threads of libraries would only disturb its neighbours' timing."""
-
 POLL_S = 0.002
+
+END_S = 10.0
+"""When a server gives up to end its descendants: only one that forks without end lasts so long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +46,14 @@ class Warmth:
     planners : (plugin name, settings as JSON) of each variant.
     queries : (source of the scene, name of the query).
     limit_s : what the warm-up of one planner may take, seconds.
+    memory_bytes : what it may hold.
     main : name and file of the module that users started, which children must not run again.
     """
 
     planners: tuple[tuple[str, str], ...] = ()
     queries: tuple[tuple[str, str], ...] = ()
     limit_s: float = 300.0
+    memory_bytes: int = 2_000_000_000
     main: tuple[str | None, str | None] = (None, None)
 
     def environment(self) -> dict[str, str]:
@@ -63,7 +63,7 @@ class Warmth:
 
 def warm(wanted: Mapping[str, Any]) -> None:
     """Make ready what a :class:`Warmth`, as plain data, asks for."""
-    end_quietly()
+    _become_server()
     _stand_in_for_main(*wanted["main"])
     for source, query in wanted["queries"]:
         # A scene that can't be loaded is reported by the runs that want it.
@@ -73,23 +73,57 @@ def warm(wanted: Mapping[str, Any]) -> None:
             referee(source)
     with _silence():
         for name, settings in wanted["planners"]:
-            _warm_planner(name, json.loads(settings), wanted["limit_s"])
+            _warm_planner(name, json.loads(settings), wanted["limit_s"], wanted["memory_bytes"])
+            _end_children()
     # Children then leave these objects, and the pages they lie on, alone.
     gc.collect()
     gc.freeze()
 
 
-def _warm_planner(name: str, settings: Mapping[str, Any], limit_s: float) -> None:
+def _become_server() -> None:
+    """What this process must be before it meets a plugin: quiet, and answerable for its children.
+
+    Ctrl-C is for the harness, which kills the server if it must, and so are the signals that a
+    terminal or a batch system sends to the whole group. When the harness is gone, the server ends,
+    and whatever still descends from it goes first.
+    """
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
+    adopt_orphans()
+    # It says so of each orphan that it reaps.
+    warnings.filterwarnings("ignore", message="forkserver: waitpid returned unexpected pid")
+    end_quietly()
+    atexit.register(_end_children)
+
+
+def _end_children() -> None:
+    """Kill all descendants of this process; as it adopts orphans, they become its children."""
+    deadline = time.monotonic() + END_S
+    while time.monotonic() < deadline:
+        try:
+            os.waitpid(-1, os.WNOHANG)
+        except ChildProcessError:
+            return
+        for child in psutil.Process().children():
+            kill_group(child.pid)
+            with contextlib.suppress(psutil.Error):
+                child.kill()
+        time.sleep(POLL_S)
+
+
+def _warm_planner(
+    name: str, settings: Mapping[str, Any], limit_s: float, memory_bytes: int
+) -> None:
     def warm_up() -> None:
         build_planner(name, settings).warm_up()
 
-    if _survives(warm_up, limit_s):
+    if _survives(warm_up, limit_s, memory_bytes):
         with contextlib.suppress(Exception, SystemExit):
             warm_up()
 
 
-def _survives(action: Callable[[], None], limit_s: float) -> bool:
-    """Whether an action ends well in a process of its own, within a time limit."""
+def _survives(action: Callable[[], None], limit_s: float, memory_bytes: int) -> bool:
+    """Whether an action ends well in a process of its own, within limits."""
     pid = os.fork()
     if pid == 0:
         code = 1
@@ -100,13 +134,15 @@ def _survives(action: Callable[[], None], limit_s: float) -> bool:
         finally:
             # No clean-up and no exit handlers: this is a copy of the server.
             os._exit(code)
+    harness = os.getppid()
     deadline = time.monotonic() + limit_s
-    while time.monotonic() < deadline:
+    memory = MemoryWatch(pid, memory_bytes)
+    while time.monotonic() < deadline and os.getppid() == harness and memory.excess() is None:
         done, status = os.waitpid(pid, os.WNOHANG)
         if done:
             return os.waitstatus_to_exitcode(status) == 0
         time.sleep(POLL_S)
-    os.killpg(pid, signal.SIGKILL)
+    kill_family(pid)
     os.waitpid(pid, 0)
     return False
 

@@ -24,11 +24,11 @@ SIDE_BY_SIDE = 12
 _BUDGET = ["budget_wall_s", "budget_generations", "budget_checks"]
 
 
-def settings_of(runs: pd.DataFrame) -> "pd.Series[Any]":
-    """The settings of each run, as a dict."""
+def settings_of(runs: pd.DataFrame, column: str = "settings") -> "pd.Series[Any]":
+    """The settings of each run, or of its world, as a dict."""
     # Few different texts stand in many rows.
-    parsed = {text: json.loads(text) for text in runs["settings"].unique()}
-    return runs["settings"].map(parsed)
+    parsed = {text: json.loads(text) for text in runs[column].unique()}
+    return runs[column].map(parsed)
 
 
 def families(

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator
 
 from suite.report.anytime import Array, Steps, final_gaps, groups_of
 from suite.report.panels import (
@@ -13,11 +14,12 @@ from suite.report.panels import (
     PLANNERS_AT_MOST,
     SMALL,
     Panels,
+    gap_text,
     legend,
     logarithmic_gaps,
+    logarithmic_time,
     look,
     numbered,
-    plain_number,
     scene_panels,
     title,
 )
@@ -26,14 +28,12 @@ EXACT = "visibility-graph"
 """The exact solver's plugin. Its time is the limit: who needs longer, needs a reason."""
 
 MANY = 200
-"""Runs of a planner in a panel from which they are drawn paler."""
+"""Runs of a planner in a panel from which they are drawn smaller."""
 
 ABOVE = 6.0
 """How far the axis goes on above the largest gap, for failed runs; as far again for words."""
 
 SHARE_TEXT: dict[str, Any] = {"ha": "center", "va": "top", "rotation": 90, "fontsize": SMALL - 1}
-
-NO_PATH_TEXT: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": SMALL - 1}
 
 BOXES_NOTE = (
     "Box: quartiles and median of the runs that found a path; whiskers: the farthest runs within "
@@ -144,12 +144,11 @@ def plot_scatter(steps: Steps) -> Figure:
     logarithmic_gaps(first, gap)
     edge = first.get_ylim()[1]
     first.set_ylim(top=ABOVE * edge)
-    first.set_xscale("log")
-    no_path = edge * ABOVE**0.5
+    measured = time[np.isfinite(time) & (time > 0.0)]
+    logarithmic_time(first, 0.7 * float(measured.min()), 1.5 * float(measured.max()))
+    no_path = _mark_no_path(first, edge)
     for axes in panels.axes.values():
         axes.axhline(edge, color="#808080", linewidth=0.8)
-        axes.text(0.98, no_path, "no path", **NO_PATH_TEXT, transform=axes.get_yaxis_transform())
-        axes.xaxis.set_major_formatter(plain_number)
     for (scene, planner), rows in groups.items():
         if scene in panels.axes:
             height = np.where(np.isfinite(gap[rows]), np.maximum(gap[rows], LEAST_GAP), no_path)
@@ -160,6 +159,15 @@ def plot_scatter(steps: Steps) -> Figure:
     return panels.figure
 
 
+def _mark_no_path(axes: Axes, edge: float) -> float:
+    """Make a tick above the gaps for the runs without a path; where it is."""
+    place = edge * ABOVE**0.5
+    ticks = [tick for tick in axes.get_yticks() if tick <= edge]
+    axes.yaxis.set_major_locator(FixedLocator([*ticks, place]))
+    axes.yaxis.set_major_formatter(lambda gap, _: "no path" if gap > edge else gap_text(gap))
+    return place
+
+
 def _draw_runs(axes: Axes, i: int, time: Array, height: Array) -> None:
     lines = look(i)
     axes.plot(
@@ -168,9 +176,10 @@ def _draw_runs(axes: Axes, i: int, time: Array, height: Array) -> None:
         linestyle="none",
         color=lines["color"],
         marker=lines["marker"],
-        markersize=4.5,
+        # Shades of very many marks would take the colours that a picture of 256 has room for.
+        markersize=4.5 if len(time) < MANY else 2.0,
         markeredgewidth=0,
-        alpha=0.6 if len(time) < MANY else 0.15,
+        alpha=0.6 if len(time) < MANY else 1.0,
         # Points of hundreds of thousands of runs would make a vector file that nothing opens.
         rasterized=len(time) >= MANY,
     )

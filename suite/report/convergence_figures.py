@@ -14,14 +14,14 @@ from suite.report.panels import (
     PLANNERS_AT_MOST,
     legend,
     logarithmic_gaps,
+    logarithmic_time,
     look,
     numbered,
-    plain_number,
     scene_panels,
     title,
 )
 
-POINTS = 80
+POINTS = 160
 """Places on the horizontal axis."""
 
 OUT_OF_SIGHT = 1e9
@@ -85,11 +85,8 @@ def plot_convergence(steps: Steps, clock: str) -> Figure:
     for (scene, planner), band in bands.items():
         _draw_band(panels.axes[scene], grid * unit, 100.0 * band, planners[planner])
     first = next(iter(panels.axes.values()))
-    first.set_xscale("log")
-    first.set_xlim(grid[0] * unit, grid[-1] * unit)
-    for axes in panels.axes.values():
-        axes.xaxis.set_major_formatter(plain_number)
-    logarithmic_gaps(first, 100.0 * np.array([band[1] for band in bands.values()]))
+    logarithmic_time(first, grid[0] * unit, grid[-1] * unit)
+    logarithmic_gaps(first, 100.0 * np.array(list(bands.values())))
     title(panels, f"How the gap falls over {name}", label, len(scenes))
     counting = {planner for _, planner in groups}
     named = {planner: i for planner, i in planners.items() if planner in counting}
@@ -174,7 +171,7 @@ def _draw_band(axes: Axes, x: Array, band: Array, i: int) -> None:
         np.where(np.isfinite(middle), middle, np.nan),
         where="post",
         markersize=4,
-        markevery=(2 * i, 16),
+        markevery=(4 * i, 32),
         linewidth=1.5,
         **lines,
     )

@@ -14,13 +14,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator, NullLocator
+from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter, NullLocator
 
 from suite.report.figures import LINES
 from suite.report.study_figures import MARKERS
 
 COLUMNS = 4
 """Panels side by side."""
+
+HEIGHT = 2.3
+HIGHER = 3.2
+"""Of a panel, inches; higher where one or two are wide."""
 
 PANELS_AT_MOST = 16
 """A picture of more can't be read."""
@@ -71,26 +75,23 @@ def look(i: int) -> dict[str, Any]:
     }
 
 
-def scene_panels(scenes: Sequence[str], *, height: float = 2.3, share_x: bool = True) -> Panels:
+def scene_panels(scenes: Sequence[str]) -> Panels:
     """Make a figure with a panel for each scene, of at most PANELS_AT_MOST.
 
     Parameters
     ----------
     scenes : sequence of str
-    height : float
-        Of a panel, inches.
-    share_x : bool
-        Whether all panels have the same horizontal axis.
     """
     shown = list(scenes)[:PANELS_AT_MOST]
     columns = min(COLUMNS, len(shown))
     rows = -(-len(shown) // columns)
+    height = HEIGHT if columns > 2 else HIGHER
     figure, grid = plt.subplots(
         rows,
         columns,
         # A single panel must hold the title above it.
         figsize=(max(1.0 + 2.3 * columns, 6.4), 1.4 + height * rows),
-        sharex=share_x,
+        sharex=True,
         sharey=True,
         squeeze=False,
         layout="constrained",
@@ -185,11 +186,22 @@ def logarithmic_gaps(axes: Axes, gaps_per_cent: "np.ndarray[Any, np.dtype[np.flo
     axes.set_ylim(0.7 * LEAST_GAP, 1.5 * highest)
     axes.yaxis.set_major_locator(FixedLocator([d for d in decades if d <= 1.5 * highest]))
     axes.yaxis.set_minor_locator(NullLocator())
-    axes.yaxis.set_major_formatter(_gap_text)
+    axes.yaxis.set_major_formatter(gap_text)
 
 
-def _gap_text(value: float, _: object = None) -> str:
+def gap_text(value: float, _: object = None) -> str:
+    """A tick of an axis of gaps."""
     return f"≤ {value:g}" if value <= LEAST_GAP else f"{value:g}"
+
+
+def logarithmic_time(axes: Axes, low: float, high: float) -> None:
+    """Make the horizontal axis logarithmic between limits, with plain numbers at its decades."""
+    axes.set_xscale("log")
+    axes.set_xlim(low, high)
+    # Within two decades there may be a single power of ten.
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 100 * low else (1.0,)))
+    axes.xaxis.set_major_formatter(plain_number)
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def plain_number(value: float, _: object = None) -> str:
@@ -197,9 +209,12 @@ def plain_number(value: float, _: object = None) -> str:
 
     Examples
     --------
-    >>> plain_number(0.1), plain_number(1000.0), plain_number(1e5)
-    ('0.1', '1000', '10⁵')
+    >>> plain_number(0.1), plain_number(1000.0), plain_number(1e5), plain_number(2e4)
+    ('0.1', '1000', '10⁵', '2·10⁴')
     """
     if value < 1e4:
         return f"{value:g}"
-    return "10" + str(round(np.log10(value))).translate(RAISED)
+    exponent = int(np.floor(np.log10(value) + 1e-9))
+    power = "10" + str(exponent).translate(RAISED)
+    factor = round(value / 10.0**exponent)
+    return power if factor == 1 else f"{factor}·{power}"

@@ -22,6 +22,7 @@ from suite.report.export import export_rows, made_folder
 from suite.report.figures import LINES, plot_scene_results, save
 from suite.report.newest import newest
 from suite.report.rank_figures import rank_figures
+from suite.report.replanning_figure import plot_replanning
 from suite.report.runtime_figures import runtime_figures
 from suite.report.simulated import is_simulated
 from suite.report.study_figures import study_figures
@@ -42,6 +43,9 @@ from suite.store import (
 )
 
 MANIFEST = "manifest.json"
+
+REPLANNING = "replanning"
+"""Name of the figure of simulated runs."""
 
 
 def write_results(store: Path, directory: Path, *, leave_out: Collection[str] = ()) -> list[Path]:
@@ -82,7 +86,10 @@ def write_results(store: Path, directory: Path, *, leave_out: Collection[str] = 
     planned = current[~is_simulated(current)]
     files += _write_figures(_figures(planned, read_events(store)), folder)
     files += _write_scene_figures(planned, read_paths(store), scenes, folder)
-    files += _write_snapshots(current[is_simulated(current)], store, folder)
+    driven = current[is_simulated(current)]
+    if not driven.empty:
+        files += _write_figures({REPLANNING: plot_replanning(driven, read_replans(store))}, folder)
+        files += _write_snapshots(driven, store, folder)
     manifest = folder / MANIFEST
     made = _manifest(store, runs, folder, files, leave_out)
     _write_text(manifest, json.dumps(made, indent=2) + "\n")

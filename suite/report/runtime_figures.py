@@ -12,8 +12,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suite.report.anytime import Array, Steps, first_within
-from suite.report.panels import PLANNERS_AT_MOST, legend, look, numbered, plain_number
+from suite.report.anytime import Array, Steps, first_within, only
+from suite.report.panels import PLANNERS_AT_MOST, legend, logarithmic_time, look, numbered
 from suite.report.ranking import scene_scores
 
 TARGETS = 10.0 ** np.linspace(0.0, -3.0, 31)
@@ -27,7 +27,8 @@ CLOCKS = {"wall_s": ("wall time (ms)", 1e3), "checks": ("collision checks", 1.0)
 ECDF_NOTE = (
     "Each run and target is a problem: the share that is solved by then, over {scenes} and "
     "{targets} targets, gaps of 100 % to 0.1 %, evenly spaced on their logarithm. Higher and "
-    "farther left is better; what is missing to 1 was never reached."
+    "farther left is better; what is missing to 1 was never reached. Who does not count checks has "
+    "no line on the right."
 )
 PROFILE_NOTE = (
     "Share of {scenes} on which a planner's median time to come within 1 % of the optimum is at "
@@ -68,27 +69,30 @@ def plot_ecdf(steps: Steps) -> Figure:
     """
     planners = numbered(steps.runs["variant"])
     figure, panels = plt.subplots(1, 2, figsize=(9.4, 4.8), sharey=True, layout="constrained")
+    known = only(steps, ~np.isnan(steps.optimum))
+    variants = known.runs["variant"].to_numpy()
     for axes, (clock, (label, unit)) in zip(panels, CLOCKS.items(), strict=True):
-        reached = unit * np.array([first_within(steps, clock, target) for target in TARGETS])
-        _draw_ecdf(axes, reached, steps.runs["variant"].to_numpy(), planners)
+        reached = unit * np.array([first_within(known, clock, target) for target in TARGETS])
+        # The failed runs alone of a planner that does not count would say that it reaches nothing.
+        silent = set(variants[known.run[np.isnan(known.clocks[clock])]])
+        named = {planner: i for planner, i in planners.items() if planner not in silent}
+        _draw_ecdf(axes, reached, variants, named)
         axes.set_xlabel(label)
     panels[0].set_ylabel("share of runs and targets reached")
     figure.suptitle("How soon runs come near the optimum", fontsize=11)
-    scenes = steps.runs["place"][~np.isnan(steps.optimum)].nunique()
-    legend(figure, planners, ECDF_NOTE.format(scenes=_scenes(scenes), targets=len(TARGETS)))
+    scenes = _scenes(known.runs["place"].nunique())
+    legend(figure, planners, ECDF_NOTE.format(scenes=scenes, targets=len(TARGETS)))
     return figure
 
 
 def _draw_ecdf(axes: Axes, reached: Array, variants: Array, planners: dict[str, int]) -> None:
-    """Draw what is reached over a clock; (targets, runs) float64."""
+    """Draw the share that is reached over a clock; (targets, runs) float64, infinite if never."""
     finite = reached[np.isfinite(reached) & (reached > 0.0)]
     low, high = (finite.min(), finite.max()) if len(finite) else (1.0, 10.0)
     ends = 0.8 * low, max(1.25 * high, 10.0 * low)
     x = np.geomspace(*ends, POINTS)
     for planner, i in planners.items():
-        mine = reached[:, variants == planner].ravel()
-        # A run that did not count on this clock is left out, and one without an optimum.
-        mine = np.sort(mine[~np.isnan(mine)])
+        mine = np.sort(reached[:, variants == planner].ravel())
         if not len(mine):
             continue
         share = np.searchsorted(mine, x, side="right") / len(mine)
@@ -141,9 +145,7 @@ def plot_profile(scores: pd.DataFrame) -> Figure:
 
 
 def _logarithmic(axes: Axes, low: float, high: float) -> None:
-    axes.set_xscale("log")
-    axes.set_xlim(low, high)
-    axes.xaxis.set_major_formatter(plain_number)
+    logarithmic_time(axes, low, high)
     axes.grid(alpha=0.3, linewidth=0.5)
 
 

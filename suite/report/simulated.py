@@ -174,7 +174,7 @@ def _reactions(replans: pd.DataFrame) -> Iterator[dict[str, Any]]:
         return
     paper = [r.value for r in find(scene=UNKNOWN, quantity="reaction_s")]
     stated = (paper[0], None, paper[1])
-    news = pd.DataFrame([row for _, run in replans.groupby("key") for row in _changes(run)])
+    news = reactions(replans)
     for number, words in enumerate(CHANGES):
         here = news[news["number"] == number] if len(news) else news
         if here.empty:
@@ -188,6 +188,25 @@ def _reactions(replans: pd.DataFrame) -> Iterator[dict[str, Any]]:
             "paper reaction (s)": stated[number],
             "ours reaction (s)": float(here["latency_s"].median()),
         }
+
+
+def reactions(replans: pd.DataFrame) -> pd.DataFrame:
+    """The updates at which robots saw something new, and what the planner made of it.
+
+    Parameters
+    ----------
+    replans : DataFrame
+        With the column ``world_settings`` of their runs.
+
+    Returns
+    -------
+    DataFrame
+        number (from 0, in the order of time), detour (cost of the new path above what was left of
+        the old one, metres), as stated (whether that is what the paper says of this change),
+        latency_s.
+    """
+    rows = [row for _, run in replans.groupby("key") for row in _changes(run)]
+    return pd.DataFrame(rows, columns=["number", "detour", "as stated", "latency_s"])
 
 
 def _changes(run: pd.DataFrame) -> Iterator[dict[str, Any]]:

@@ -101,15 +101,15 @@ def _latex(table: Table) -> str:
     texts = as_texts(table)
     body = texts.style.hide(axis="index").format(escape="latex")
     body = body.format_index(escape="latex", axis=1)
-    return str(
-        body.to_latex(
-            column_format=columns,
-            hrules=True,
-            caption=_escaped(f"{table.title}. {table.note}".strip()),
-            label=f"tab:{table.name}",
-            position_float="centering",
-        )
+    written = body.to_latex(
+        column_format=columns,
+        hrules=True,
+        caption=_escaped(f"{table.title}. {table.note}".strip()),
+        label=f"tab:{table.name}",
+        position_float="centering",
     )
+    # LaTeX's own fonts have another sign in its place.
+    return str(written).replace("<", "$<$")
 
 
 _RENDERERS: dict[Format, Callable[[Table], str]] = {

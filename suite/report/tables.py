@@ -15,6 +15,7 @@ from suite.report.studies import study_tables
 from suite.report.summary import summary_table
 from suite.report.table import Table
 from suite.report.targets import target_tables
+from suite.report.verdicts import Rows, verdict_table
 
 BOOTSTRAP_SEED = 2004
 """Any will do; the same rows give the same intervals."""
@@ -56,16 +57,23 @@ def all_tables(
     moving = []
     if simulations is not None and replans is not None:
         moving = simulated_tables(driven, simulations, replans)
+    answers = verdict_table(Rows(kept, driven, _or_empty(first), _or_empty(replans)))
+    told = [] if answers is None else [answers]
     if kept.empty and moving:
-        return moving
+        return [*moving, *told]
     return [
         summary_table(kept, left_out),
         *moving,
+        *told,
         *paper_tables(kept),
         *ablation_tables(kept, COST_NOTE),
         *study_tables(kept, first),
         *([] if events is None else measured_tables(steps_of(kept, events))),
     ]
+
+
+def _or_empty(frame: pd.DataFrame | None) -> pd.DataFrame:
+    return pd.DataFrame() if frame is None else frame
 
 
 def measured_tables(steps: Steps) -> list[Table]:

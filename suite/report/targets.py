@@ -27,13 +27,13 @@ MEASURES = {
 
 NOTE = (
     "Medians over all runs: one that never came so near counts as infinitely long, so that "
-    "'never' stands where half of the runs or more did not. gen and checks stay empty where the "
-    "planner does not count them. Times are of the planner's own reports; the referee has measured "
-    "its last path, and no report counts for less than that."
+    "'never', within the budget that they had, stands where half of the runs or more did not. gen "
+    "and checks stay empty where the planner does not count them. Times are of the planner's own "
+    "reports; the referee has measured its last path, and no report counts for less than that."
 )
 GLANCE_NOTE = (
-    "k of n: how many runs came so near, where not all did. Median over all runs; 'never' where "
-    "half of them or more did not."
+    "k of n: how many runs came so near, where not all did. Median over all runs; 'never', within "
+    "the budget that they had, where half of them or more did not."
 )
 
 

@@ -5,13 +5,20 @@ The fixture ``hostile`` makes a distribution of them, with metadata like any ins
 """
 
 import ctypes
+import gc
 import os
+import random
 import signal
 import sys
+import threading
 import time
+import types
 from dataclasses import dataclass
+from pathlib import Path
 
+import numba
 import numpy as np
+import psutil
 import shapely
 
 from suite.exact import shortest_path
@@ -68,6 +75,18 @@ class Careless(_Base):
         return Plan(PlanStatus.SOLVED, path)
 
 
+class CountsLateImports(_Base):
+    """Says how many modules of the suite were loaded after the fork server was warmed."""
+
+    name = "counts-late-imports"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        # The server takes what it has loaded out of the collector's sight.
+        seen = [o for o in gc.get_objects() if isinstance(o, types.ModuleType)]
+        late = sum(module.__name__.startswith("suite.") for module in seen)
+        return Plan(PlanStatus.SOLVED, self.path(scene, query), details={"late": late})
+
+
 class Sleeper(_Base):
     name = "sleeper"
 
@@ -80,6 +99,22 @@ class Raises(_Base):
 
     def misbehave(self):
         raise RuntimeError("no luck today")
+
+
+class RaisesBaseException(_Base):
+    """What ``except Exception`` does not catch."""
+
+    name = "raises-base-exception"
+
+    def misbehave(self):
+        raise GeneratorExit
+
+
+class Interrupts(_Base):
+    name = "interrupts"
+
+    def misbehave(self):
+        raise KeyboardInterrupt
 
 
 class SystemExits(_Base):
@@ -122,6 +157,23 @@ class HangsInC(_Base):
         ctypes.PyDLL(None).sleep(60)
 
 
+@numba.njit("int64(int64)", nogil=False)
+def _endless(number):
+    while number >= 0:
+        number = (number + 1) % 1000
+    return number
+
+
+class HangsInKernel(_Base):
+    """Keeps the GIL too, and sees no signal that Python handles."""
+
+    name = "hangs-in-kernel"
+
+    def misbehave(self):
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        _endless(1)
+
+
 class HangsInWarmUp(_Base):
     name = "hangs-in-warm-up"
 
@@ -147,13 +199,212 @@ class Forks(_Base):
             os._exit(0)
 
 
+def _go_away(then=lambda: time.sleep(60)):
+    """A daemon, as the book has it: fork, leave session and terminal, fork again, let go."""
+    if os.fork() == 0:
+        os.setsid()
+        if os.fork() == 0:
+            os.closerange(0, 256)
+            then()
+        os._exit(0)
+
+
+class Daemonizes(_Base):
+    name = "daemonizes"
+
+    def misbehave(self):
+        _go_away()
+        os.wait()
+
+
+class DaemonizesInWarmUp(_Base):
+    """And so in the fork server, too."""
+
+    name = "daemonizes-in-warm-up"
+
+    def warm_up(self):
+        super().warm_up()
+        _go_away()
+
+
+class DaemonizesAndDies(_Base):
+    name = "daemonizes-and-dies"
+
+    def misbehave(self):
+        _go_away()
+        os.wait()
+        ctypes.string_at(0)
+
+
+class DaemonizesAndHangs(_Base):
+    name = "daemonizes-and-hangs"
+
+    def misbehave(self):
+        _go_away()
+        while True:
+            pass
+
+
+class LeavesItsSessionAndHangs(_Base):
+    """In a child that keeps all descriptors."""
+
+    name = "leaves-its-session-and-hangs"
+
+    def misbehave(self):
+        if os.fork() == 0:
+            os.setsid()
+            time.sleep(60)
+        while True:
+            pass
+
+
+class KillsItsParent(_Base):
+    name = "kills-its-parent"
+
+    def misbehave(self):
+        os.kill(os.getppid(), signal.SIGKILL)
+        time.sleep(60)
+
+
+class ComesBackTwice(_Base):
+    """Forks, and lets the child go on as if it were the planner."""
+
+    name = "comes-back-twice"
+
+    def misbehave(self):
+        os.fork()
+
+
 class Prints(_Base):
+    """100 MB to standard output, and as much to standard error."""
+
     name = "prints"
 
     def misbehave(self):
         for _ in range(100):
-            os.write(1, b"x" * 65536)
-            os.write(2, b"y" * 65536)
+            os.write(1, b"x" * 1_000_000)
+            os.write(2, b"y" * 1_000_000)
+
+
+class PrintsIntoPipes(_Base):
+    """Into every descriptor that is open for writing."""
+
+    name = "prints-into-pipes"
+
+    def misbehave(self):
+        for descriptor in range(3, 256):
+            try:
+                os.write(descriptor, b"garbage, and not a little of it\n")
+            except OSError:
+                continue
+
+
+class PrintsALittleIntoPipes(_Base):
+    """So that a reader waits for more."""
+
+    name = "prints-a-little-into-pipes"
+
+    def misbehave(self):
+        for descriptor in range(3, 256):
+            try:
+                os.write(descriptor, b"\0\1")
+            except OSError:
+                continue
+        while True:
+            pass
+
+
+class ClosesDescriptors(_Base):
+    name = "closes-descriptors"
+
+    def misbehave(self):
+        os.closerange(0, 256)
+
+
+class LeavesThreads(_Base):
+    """Not daemonic: Python would wait for them."""
+
+    name = "leaves-threads"
+
+    def misbehave(self):
+        for _ in range(3):
+            threading.Thread(target=time.sleep, args=(60,)).start()
+
+
+class ChangesSignals(_Base):
+    name = "changes-signals"
+
+    def misbehave(self):
+        for number in set(signal.Signals) - {signal.SIGKILL, signal.SIGSTOP}:
+            signal.signal(number, signal.SIG_IGN)
+        signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())
+
+
+class ChangesTheWorld(_Base):
+    """All that a process has of its own, and the next run must not notice."""
+
+    name = "changes-the-world"
+
+    def misbehave(self):
+        np.random.seed(1)
+        np.random.random(7)
+        random.seed(1)
+        os.chdir("/")
+        os.environ.clear()
+        os.environ["OMP_NUM_THREADS"] = "64"
+        os.umask(0o777)
+        sys.path.clear()
+        np.seterr(all="raise")
+        gc.disable()
+        np.pi = 3.0
+
+
+class LooksAround(_Base):
+    """Says in its details what it finds, for the tests."""
+
+    name = "looks-around"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        np.ones((400, 400)) @ np.ones((400, 400))
+        details = {
+            "random": random.random(),
+            "numpy_random": np.random.random(),
+            "folder": hash(str(Path.cwd())),
+            "environment": hash(tuple(sorted(os.environ.items()))),
+            "pi": np.pi,
+            "cores": len(os.sched_getaffinity(0)),
+            "core": min(os.sched_getaffinity(0)),
+            "numba_threads": numba.get_num_threads(),
+            "threads": psutil.Process().num_threads(),
+        }
+        return Plan(PlanStatus.SOLVED, self.path(scene, query), details=details)
+
+
+class ChangesTheScene(_Base):
+    name = "changes-the-scene"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        query.goal[:] = query.start
+        return Plan(PlanStatus.SOLVED, np.array([query.start, query.goal]))
+
+
+class MovesTheGoal(_Base):
+    """Not by mistake."""
+
+    name = "moves-the-goal"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        query.goal.setflags(write=True)
+        query.goal[:] = query.start + 0.1
+        return Plan(PlanStatus.SOLVED, np.array([query.start, query.goal]))
+
+
+class ChangesObstacles(_Base):
+    name = "changes-obstacles"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        scene.obstacles = ()
+        return Plan(PlanStatus.SOLVED, np.array([query.start, query.goal]))
 
 
 class ReturnsNone(_Base):
@@ -161,6 +412,29 @@ class ReturnsNone(_Base):
 
     def plan(self, scene, query, budget, rng, recorder):
         return None
+
+
+class Generates(_Base):
+    """Its plan is a generator function, by one ``yield`` too many."""
+
+    name = "generates"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        yield Plan(PlanStatus.SOLVED, self.path(scene, query))
+
+
+class ReturnsAGenerator(_Base):
+    name = "returns-a-generator"
+
+    def path(self, scene, query):
+        return (point for point in (query.start, query.goal))
+
+
+class ReturnsAWrongShape(_Base):
+    name = "returns-a-wrong-shape"
+
+    def path(self, scene, query):
+        return np.zeros((4, 3))
 
 
 class ReturnsNoPath(_Base):
@@ -226,3 +500,51 @@ class EatsMemory(_Base):
 
     def misbehave(self):
         raise MemoryError
+
+
+def _eat():
+    """As fast as the processor fills pages, in C: Python's part in it is small."""
+    eaten = []
+    while True:
+        eaten.append(np.ones(1 << 24))
+
+
+class EatsAllMemory(_Base):
+    name = "eats-all-memory"
+
+    def misbehave(self):
+        os.write(2, b"hungry\n")
+        _eat()
+
+
+class LetsADaemonEat(_Base):
+    """Sits by while a process that left it takes the memory."""
+
+    name = "lets-a-daemon-eat"
+
+    def misbehave(self):
+        _go_away(_eat)
+        time.sleep(60)
+
+
+class EatsInWarmUp(_Base):
+    name = "eats-in-warm-up"
+
+    def warm_up(self):
+        _eat()
+
+
+class WrongSignature(_Base):
+    name = "wrong-signature"
+
+    def plan(self, scene, query):
+        return Plan(PlanStatus.EXHAUSTED)
+
+
+class NewerInterface(_Base):
+    name = "newer-interface"
+    interface = 2
+
+
+class NoPlan(Planner):
+    name = "no-plan"

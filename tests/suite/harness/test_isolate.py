@@ -1,11 +1,14 @@
 import os
-import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
 
 import numpy as np
 import psutil
 import pytest
 
+from suite.harness import warm
+from suite.harness.cell import build_planner
+from suite.harness.cores import honest_cores
 from suite.harness.isolate import run_isolated
 from suite.harness.matrix import Limits
 from suite.harness.single import cell_for
@@ -21,6 +24,11 @@ def run(hostile, wall_file):
         return run_isolated(cell_for(str(wall_file), name, seed=seed), limits, Warmth())
 
     return run_planner
+
+
+def servers():
+    children = psutil.Process().children()
+    return [p for p in children if "multiprocessing.forkserver" in " ".join(p.cmdline())]
 
 
 def test_a_run_comes_back_whole(run):
@@ -64,20 +72,62 @@ def test_the_last_words_of_a_crashed_process_are_kept(run):
     assert run("exits").stderr == "going down"
 
 
-def test_a_process_that_a_planner_leaves_behind_is_killed(run):
-    before = {p.pid for p in psutil.process_iter()}
-    assert run("forks").status is PlanStatus.SOLVED
-    time.sleep(0.2)
-    new = [p for p in psutil.process_iter(["cmdline"]) if p.pid not in before]
-    mine = [p for p in new if "forkserver" in " ".join(p.info["cmdline"] or [])]
-    running = [p for p in mine if p.status() != psutil.STATUS_ZOMBIE and p.ppid() == 1]
-    assert not running
+@pytest.mark.parametrize("planner", ["forks", "daemonizes", "daemonizes-and-dies"])
+def test_a_process_that_a_planner_leaves_behind_is_killed(run, planner):
+    run("wanderer")
+    (server,) = servers()
+    assert run(planner).status in (PlanStatus.SOLVED, PlanStatus.CRASHED)
+    # It adopts whatever loses its parent.
+    assert server.children(recursive=True) == []
 
 
 def test_a_planner_that_draws_from_the_global_generator_gets_another_stream_in_each_run(run):
     one, again, other = run("careless", seed=1), run("careless", seed=1), run("careless", seed=2)
     np.testing.assert_array_equal(one.path, again.path)
     assert not np.array_equal(one.path, other.path)
+
+
+def test_what_a_planner_changes_in_its_process_is_not_there_in_the_next(run):
+    before = run("looks-around").details
+    assert run("changes-the-world").status is PlanStatus.SOLVED
+    after = run("looks-around").details
+    assert {k: v for k, v in after.items() if k != "core"} == {
+        k: v for k, v in before.items() if k != "core"
+    }
+
+
+def test_a_run_has_one_thread(run):
+    details = run("looks-around").details
+    assert (details["threads"], details["numba_threads"]) == (1.0, 1.0)
+
+
+def test_a_run_stays_on_the_core_that_it_was_given(run, monkeypatch):
+    core = max(honest_cores())
+    monkeypatch.setattr("suite.harness.isolate.own_core", lambda: nullcontext(core))
+    details = run("looks-around").details
+    assert (details["cores"], details["core"]) == (1.0, core)
+
+
+def test_a_planner_that_kills_the_fork_server_does_not_stop_the_others(run):
+    assert run("kills-its-parent").status is PlanStatus.CRASHED
+    assert run("wanderer").status is PlanStatus.SOLVED
+
+
+def test_memory_counts_for_all_processes_of_a_run_together(run):
+    record = run("lets-a-daemon-eat", limits=Limits(wall_s=30.0, memory_mb=400.0))
+    assert record.status is PlanStatus.OUT_OF_MEMORY
+    assert record.reason.startswith("plan held")
+
+
+def test_warming_up_has_the_same_limit_on_memory(run):
+    record = run("eats-in-warm-up", limits=Limits(warm_up_s=120.0, memory_mb=400.0))
+    assert record.status is PlanStatus.OUT_OF_MEMORY
+    assert record.reason.startswith("warm-up held")
+
+
+def test_a_planner_that_takes_the_memory_when_the_fork_server_tries_it_stays_cold(hostile):
+    planner = build_planner("eats-in-warm-up", {})
+    assert not warm._survives(planner.warm_up, limit_s=120.0, memory_bytes=400_000_000)
 
 
 def test_runs_leave_the_environment_and_the_folder_of_the_harness_alone(run):

@@ -205,6 +205,13 @@ def test_an_infinite_number_is_printed_in_words():
     assert render(table, Format.CSV) == "time (ms)\n1.0\ninf\n"
 
 
+def test_latex_has_a_less_than_sign_in_every_font():
+    table = Table("t", "T", pd.DataFrame({"better": ["0.90 (<0.001)"]}), "p < 0.001")
+    text = render(table, Format.LATEX)
+    assert "0.90 ($<$0.001)" in text
+    assert "p $<$ 0.001" in text
+
+
 def test_small_p_values_keep_their_digits():
     table = Table("t", "T", pd.DataFrame({"p": [0.00123], "x": [0.00123]}))
     assert "0.0012" in render(table, Format.MARKDOWN)

@@ -1,0 +1,80 @@
+"""One matrix of planners that do what strangers' planners may do, and one that behaves."""
+
+import psutil
+import pytest
+
+from suite.harness.matrix import load_matrix
+from suite.harness.run import run_matrix
+from suite.store import open_store, read_runs
+
+# variant: how its run must end, and what its row must say.
+WANTED = {
+    "changes-obstacles": ("error", "FrozenInstanceError"),
+    "changes-signals": ("solved", None),
+    "changes-the-scene": ("error", "read-only"),
+    "changes-the-world": ("solved", None),
+    "cheats": ("invalid", "enters obstacle 1"),
+    "closes-descriptors": ("crashed", "the process ended with exit code"),
+    "comes-back-twice": ("solved", None),
+    "daemonizes": ("solved", None),
+    "daemonizes-and-dies": ("crashed", "SIGSEGV"),
+    "daemonizes-and-hangs": ("timed_out", "plan took more than 1 s and was killed."),
+    "daemonizes-in-warm-up": ("solved", None),
+    "eats-all-memory": ("out_of_memory", "above 600 MB, and was killed."),
+    "eats-memory": ("out_of_memory", "MemoryError"),
+    "exits": ("crashed", "exit code 3"),
+    "exits-in-warm-up": ("crashed", "exit code 4"),
+    "forks": ("solved", None),
+    "generates": ("error", "plan returned generator"),
+    "hangs": ("timed_out", "plan took more than 1 s"),
+    "hangs-in-c": ("timed_out", "plan took more than 1 s"),
+    "hangs-in-kernel": ("timed_out", "plan took more than 1 s"),
+    "hangs-in-warm-up": ("timed_out", "warm-up took more than 3 s"),
+    "interrupts": ("error", "KeyboardInterrupt"),
+    "leaves-threads": ("solved", None),
+    "leaves-its-session-and-hangs": ("timed_out", "plan took more than 1 s"),
+    "lets-a-daemon-eat": ("out_of_memory", "above 600 MB"),
+    "moves-the-goal": ("error", "changed the start or the goal"),
+    "prints": ("solved", None),
+    "prints-a-little-into-pipes": ("timed_out", "plan took more than 1 s"),
+    "prints-into-pipes": ("error", "wrote into the pipe"),
+    "raises": ("error", "RuntimeError: no luck today"),
+    "raises-base-exception": ("error", "GeneratorExit"),
+    "returns-a-generator": ("invalid", "not a path"),
+    "returns-a-wrong-shape": ("invalid", "(4, 3)"),
+    "returns-nan": ("invalid", "must be finite"),
+    "returns-none": ("error", "plan returned NoneType"),
+    "segfaults": ("crashed", "SIGSEGV"),
+    "system-exits": ("error", "SystemExit: 3"),
+    "visibility-graph": ("solved", None),
+}
+
+
+# Machines differ in how fast they fill memory: these get all the time they need.
+EATERS = ("eats-all-memory", "lets-a-daemon-eat")
+LIMITS = "[limits]\nwall_s = 1.0\nwarm_up_s = 3.0\nmemory_mb = 600\n"
+
+
+@pytest.fixture
+def rows(hostile, wall_file, tmp_path):
+    file, store = tmp_path / "matrix.toml", tmp_path / "store.db"
+    planners = "".join(
+        f'[[planner]]\nplanner = "{name}"\n' + "budget = { wall_s = 30 }\n" * (name in EATERS)
+        for name in WANTED
+    )
+    file.write_text(f'scenes = ["{wall_file}"]\nseeds = 1\n{LIMITS}{planners}')
+    with open_store(store) as opened:
+        run_matrix(load_matrix(file), opened, jobs=2)
+    return read_runs(store).set_index("variant")
+
+
+def test_every_hostile_planner_is_one_row_and_leaves_nothing(rows):
+    assert rows["status"].to_dict() == {name: status for name, (status, _) in WANTED.items()}
+    for name, (_, reason) in WANTED.items():
+        assert reason is None or reason in rows.loc[name, "reason"], name
+    assert rows.loc["eats-all-memory", "stderr"] == "hungry"
+    assert rows.loc["visibility-graph", "gap"] == pytest.approx(0.0, abs=1e-12)
+    left = psutil.Process().children(recursive=True)
+    # The fork server adopts what its children leave: it would be found here.
+    assert [p for p in left if not {"-c", "-s"} & set(p.cmdline())] == []
+    assert len([p for p in left if "forkserver" in " ".join(p.cmdline())]) == 1
