@@ -8,7 +8,9 @@ for (const figure of document.querySelectorAll("[data-chart]")) {
   const config = {
     responsive: true,
     displaylogo: false,
-    modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
+    // Named one by one: among plotly's own there is one that sends the chart away.
+    modeBarButtons: [["toImage", "zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"]],
+    plotlyServerURL: "",
   };
 
   const draw = () => {

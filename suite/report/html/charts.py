@@ -15,7 +15,7 @@ from suite.report.anytime import Array, Steps, first_within, only
 from suite.report.convergence_figures import CLOCKS, counted_groups, gap_bands, grid_over
 from suite.report.html.appearance import PLANNERS_AT_MOST, Appearance, appearance
 from suite.report.html.scenes import SCENES_AT_MOST
-from suite.report.panels import LEAST_GAP
+from suite.report.panels import LEAST_GAP, plain_number
 from suite.report.runtime_figures import CLOCKS as ECDF_CLOCKS
 from suite.report.runtime_figures import TARGETS
 
@@ -167,7 +167,7 @@ def _band_traces(planner: str, look: Appearance, x: Array, band: Array) -> list[
     nothing = {"x": _rounded(x[kept]), "hoverinfo": "skip", "mode": "lines"}
     thin = {"width": 0, "shape": "hv", "color": look.colour}
     has_path = np.isfinite(band[1])
-    median = _line(planner, look, x[has_path], middle[has_path])
+    median = _line(planner, look, x[has_path], middle[has_path], band[1][has_path])
     traces = [
         go.Scatter(y=_rounded(low[kept]), line=thin, **nothing),
         go.Scatter(
@@ -189,10 +189,11 @@ def _ecdf_trace(
     if not len(mine):
         return None
     share = 100.0 * np.searchsorted(mine, grid, side="right") / len(mine)
-    return _line(planner, look, grid, share)
+    return _line(planner, look, grid, share, share)
 
 
-def _line(planner: str, look: Appearance, x: Array, y: Array) -> dict[str, Any]:
+def _line(planner: str, look: Appearance, x: Array, y: Array, told: Array) -> dict[str, Any]:
+    """A line at y, of which a reader who points at it is told the true numbers."""
     # With every place on the axis, not the steps alone: numbers are shown where there is a point.
     trace = go.Scatter(
         x=_rounded(x),
@@ -200,7 +201,8 @@ def _line(planner: str, look: Appearance, x: Array, y: Array) -> dict[str, Any]:
         name=planner,
         mode="lines",
         line={"color": look.colour, "dash": look.dash, "width": 2, "shape": "hv"},
-        hovertemplate="%{y:.3g} %",
+        customdata=_rounded(told),
+        hovertemplate="%{customdata:.3~g} %",
     )
     return dict(trace.to_plotly_json())
 
@@ -229,13 +231,15 @@ def _share_layout(label: str, x: Array) -> dict[str, Any]:
 def _layout(label: str, x: Array, y_axis: dict[str, Any]) -> dict[str, Any]:
     rules = {"gridcolor": RULES, "linecolor": INK, "zeroline": False, "automargin": True}
     ends = [float(np.log10(x[0])), float(np.log10(x[-1]))]
+    decades = 10.0 ** np.arange(np.ceil(ends[0]), np.floor(ends[1]) + 1)
     layout = go.Layout(
         xaxis={
             "title": {"text": label},
             "type": "log",
             "range": ends,
-            "dtick": 1,
-            "hoverformat": ".3g",
+            "tickvals": decades.tolist(),
+            "ticktext": [plain_number(decade) for decade in decades],
+            "unifiedhovertitle": {"text": f"{label}: %{{x:.3~g}}"},
             **rules,
         },
         yaxis={**y_axis, **rules},

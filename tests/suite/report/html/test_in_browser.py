@@ -146,8 +146,16 @@ def test_hovering_over_a_line_gives_its_numbers(seen):
     box = seen.page.locator("#ecdf-plot .nsewdrag").bounding_box()
     seen.page.mouse.move(box["x"] + 0.95 * box["width"], box["y"] + 0.5 * box["height"], steps=5)
     layer = seen.page.locator("#ecdf-plot .hoverlayer")
-    every = r"kbga : [\d.]+ %.*visibility-graph : [\d.]+ %.*bad-planner : 0.00 %"
+    every = r"kbga : [\d.]+ %.*visibility-graph : [\d.]+ %.*bad-planner : 0 %"
     expect(layer).to_contain_text(re.compile(every))
+
+
+def test_no_button_of_a_chart_sends_it_anywhere(seen):
+    buttons = seen.page.locator("#ecdf-plot .modebar-btn")
+    titles = buttons.evaluate_all("found => found.map(button => button.dataset.title)")
+    assert titles == [
+        "Download plot as a PNG", "Zoom", "Pan", "Zoom in", "Zoom out", "Reset axes",
+    ]  # fmt: skip
 
 
 def test_the_player_steps_by_click_and_by_keyboard(seen):
