@@ -184,6 +184,8 @@ def _load(name: str, points: Sequence[EntryPoint]) -> type[Planner]:
     try:
         # Other people's code: whatever its import raises must not end the listing.
         found = points[0].load()
+    except PluginError:
+        raise  # the plugin's own sentence, such as how to install what it needs
     except (Exception, SystemExit) as error:
         raise PluginError(f"{type(error).__name__}: {error}") from error
     if not (isinstance(found, type) and issubclass(found, Planner)):

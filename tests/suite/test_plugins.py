@@ -132,6 +132,19 @@ def test_a_plugin_that_fails_to_import_is_a_row_and_stops_nothing(install, code,
     assert reason in str(error.value)
 
 
+def test_a_plugin_that_says_itself_why_it_is_unavailable_is_quoted(install):
+    code = (
+        "from suite.errors import PluginError\n"
+        "raise PluginError('it needs boots. Install them with: pip install boots')"
+    )
+    install("walkers", {"walk": "walkers:Walk"}, code)
+    said = "unavailable: it needs boots. Install them with: pip install boots"
+    assert row("walk").reason == said
+    with pytest.raises(PluginError) as error:
+        load_planner("walk")
+    assert str(error.value) == f"planner 'walk' is {said}"
+
+
 @pytest.mark.parametrize(
     ("name", "attribute", "reason"),
     [
