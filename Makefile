@@ -7,7 +7,7 @@ STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
 
-.PHONY: setup bench test test-slow torture lint perf clean
+.PHONY: setup browser bench test test-slow torture lint perf harness results clean
 
 setup: $(STAMP)
 
@@ -17,13 +17,21 @@ $(STAMP): pyproject.toml
 	$(BIN)/python -m pip install --quiet -e ".[dev]"
 	touch $@
 
+# The report is tested in Debian's chromium. Where it is missing and can't be installed, the tests
+# that need it are skipped, and say so.
+CHROMIUM := /usr/bin/chromium
+browser:
+	@test -x $(CHROMIUM) || { test "$$(id -u)" = 0 && apt-get update -qq \
+		&& DEBIAN_FRONTEND=noninteractive apt-get install -y -qq chromium >/dev/null; } \
+		|| echo "No $(CHROMIUM), and no right to install it: the report is not tested in a browser."
+
 bench: setup
 	mkdir -p $(dir $(STORE))
 	$(BIN)/kbga-bench run paper-static --store $(STORE) --jobs $(JOBS) $(ARGS)
 	$(BIN)/kbga-bench tables $(STORE)
 
 # The kernels' claims hold compiled and interpreted: the second line runs them without the JIT.
-test: setup
+test: setup browser
 	$(BIN)/python -m pytest -q -m "not slow and not torture" -n 2 --dist worksteal
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -m "not slow and not torture" -n 2 tests/suite/geometry tests/kbga
 
@@ -45,6 +53,32 @@ perf: setup
 	$(BIN)/python -m pytest -q tests/perf --benchmark-only --benchmark-json=out/performance.json \
 		--benchmark-columns=median,max,rounds --benchmark-sort=name
 	$(BIN)/python -m tests.perf.performance_table out/performance.json results/performance
+
+# Everything in results/ that comes from a matrix: half an hour on two cores, nothing else running.
+CAMPAIGNS := paper-static paper-dynamic resolution obstacles kbga-rounds ablation mutation-rate \
+	penalty first-population tuning
+PAPER := paper-static paper-dynamic resolution
+leave-ablation := --leave-out traces
+leave-mutation-rate := --leave-out traces
+leave-penalty := --leave-out traces
+leave-tuning := --leave-out traces
+leave-paper-dynamic := --leave-out paths
+
+results: $(CAMPAIGNS:%=results-%)
+	rm -f out/paper.db
+	$(BIN)/kbga-bench merge out/paper.db $(PAPER:%=out/%.db)
+	$(BIN)/kbga-bench tables out/paper.db --format markdown --output results/paper
+	$(BIN)/kbga-bench tables out/paper.db --format csv --output results/paper
+	$(BIN)/kbga-bench report out/paper.db -o results/paper/report.html
+
+$(CAMPAIGNS:%=results-%): results-%: setup
+	mkdir -p out
+	$(BIN)/kbga-bench run $* --store out/$*.db --jobs $(JOBS)
+	$(BIN)/kbga-bench results out/$*.db results/$* $(leave-$*)
+
+# What the harness itself costs. On a machine that does nothing else.
+harness: setup
+	$(BIN)/python -m tests.perf.harness results/harness $(ARGS)
 
 clean:
 	rm -rf .venv out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

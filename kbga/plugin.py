@@ -18,7 +18,7 @@ class KBGAPlanner(Planner):
     name = "kbga"
     Settings = KBGASettings
     abilities: ClassVar[Abilities] = Abilities(
-        anytime=True, budgets=frozenset({"wall_s", "generations", "checks"})
+        anytime=True, budgets=frozenset({"wall_s", "generations", "checks"}), population=True
     )
 
     def plan(
@@ -37,7 +37,6 @@ class KBGAPlanner(Planner):
         A budget that ends within a generation ends the run after it.
         """
         ga = KBGA(scene, query, self.settings, rng)
-        recorder.snapshot("first population", ga.paths() if recorder.keep_snapshots else [])
         return evolved(ga, budget, recorder)
 
     def replanner(self, rng: np.random.Generator) -> Replanner:
@@ -88,6 +87,8 @@ def evolved(ga: KBGA, budget: Budget, recorder: Recorder) -> Plan:
         recorder.improved(ga.best_cost, generation=ga.generation, checks=ga.checks)
 
     def follow(ga: KBGA, _: bool) -> bool:
+        if recorder.wants_snapshot(ga.generation):
+            recorder.snapshot(ga.generation, ga.paths(), ga.best_path)
         report = ga.report()
         recorder.describe_generation(
             {

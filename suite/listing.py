@@ -61,6 +61,7 @@ def planners_listing() -> list[dict[str, Any]]:
                 "anytime": can and can.anytime,
                 "deterministic": can and can.deterministic,
                 "exact": can and can.exact,
+                "population": can and can.population,
                 "budgets": sorted(can.budgets) if can else [],
             }
         )

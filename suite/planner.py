@@ -19,7 +19,7 @@ each time. One that keeps what it knows from one time to the next overrides ``re
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, ClassVar
@@ -29,6 +29,9 @@ from numpy.typing import NDArray
 
 from suite.errors import ContractError
 from suite.scene import Query, Scene
+
+INTERFACE = 1
+"""Version of what this file promises; it rises when a planner written for it would break."""
 
 
 class PlanStatus(StrEnum):
@@ -82,12 +85,14 @@ class Abilities:
     deterministic : it uses no randomness at all.
     exact : a ``SOLVED`` path is the shortest one, and it knows when there is none.
     budgets : the fields of :class:`Budget` that it keeps.
+    population : it shows the recorder its population, whenever that asks for a snapshot.
     """
 
     anytime: bool = False
     deterministic: bool = False
     exact: bool = False
     budgets: frozenset[str] = frozenset()
+    population: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,19 +128,38 @@ class Improvement:
     checks: int | None
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Snapshot:
+    """A population as it was in one generation.
+
+    generation : int. The first population is number 0.
+    paths : its paths, each (n, 2) float64, metres.
+    best : the best feasible path so far; None without one.
+    """
+
+    generation: int
+    paths: tuple[NDArray[np.float64], ...]
+    best: NDArray[np.float64] | None = None
+
+
 class Recorder:
     """Takes what a planner reports while it runs, and stamps it with the run's one clock.
 
     improvements : list of Improvement, costs falling.
     trace : list of dicts, one for each generation that the planner chose to describe.
-    snapshots : dict from a name to a list of paths (n, 2), kept only if asked for.
+    snapshots : list of Snapshot, of the generations that were asked for.
+
+    Parameters
+    ----------
+    snapshot_of : callable
+        Whether a snapshot of a generation is wanted. In measured runs none is: it takes time.
     """
 
-    def __init__(self, *, keep_snapshots: bool = False) -> None:
+    def __init__(self, *, snapshot_of: Callable[[int], bool] = lambda _: False) -> None:
         self.improvements: list[Improvement] = []
         self.trace: list[dict[str, float]] = []
-        self.snapshots: dict[str, list[NDArray[np.float64]]] = {}
-        self.keep_snapshots = keep_snapshots
+        self.snapshots: list[Snapshot] = []
+        self.wants_snapshot = snapshot_of
         self.start_clock()
 
     def start_clock(self) -> None:
@@ -164,10 +188,17 @@ class Recorder:
         """Add one row to the trace, such as best, mean, feasible share and diversity."""
         self.trace.append(dict(measures))
 
-    def snapshot(self, name: str, paths: Sequence[NDArray[np.float64]]) -> None:
-        """Keep some paths under a name, for plots. Does nothing unless snapshots are asked for."""
-        if self.keep_snapshots:
-            self.snapshots[name] = [np.array(p, dtype=np.float64) for p in paths]
+    def snapshot(
+        self,
+        generation: int,
+        paths: Sequence[NDArray[np.float64]],
+        best: NDArray[np.float64] | None = None,
+    ) -> None:
+        """Show a population. Ask ``wants_snapshot(generation)`` before: this ignores the others."""
+        if self.wants_snapshot(generation):
+            copies = tuple(np.array(path, dtype=np.float64) for path in paths)
+            best = None if best is None else np.array(best, dtype=np.float64)
+            self.snapshots.append(Snapshot(generation, copies, best))
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,11 +212,14 @@ class Planner(ABC):
     name : the word under which users ask for it; the entry point has the same name.
     Settings : a frozen dataclass whose fields all have defaults.
     abilities : what it can do.
+    interface : the version of this file that it is written for. Say it in a plugin that is
+        installed by others: one for another version is then refused, with that reason.
     """
 
     name: ClassVar[str]
     Settings: ClassVar[type[Any]] = NoSettings
     abilities: ClassVar[Abilities] = Abilities()
+    interface: ClassVar[int] = INTERFACE
 
     def __init__(self, settings: Any = None) -> None:
         self.settings = self.Settings() if settings is None else settings

@@ -6,12 +6,12 @@ A planner is declared in the metadata of any installed distribution::
     straight-line = "my_package.straight:StraightLine"
 
 Listing names reads metadata and imports nothing. A plugin that can't be imported is a row that
-says so; it stops nobody else.
+says so; it stops nobody else. Planners that a user names on the spot (:mod:`suite.plugin_file`)
+stand beside the declared ones.
 """
 
 import dataclasses
 import difflib
-import inspect
 import types
 import typing
 from collections import defaultdict
@@ -22,8 +22,12 @@ from typing import Any
 
 from suite.errors import ContractError, PluginError
 from suite.planner import Abilities, Planner
+from suite.plugin_class import flaw
+from suite.plugin_file import NamedPlugin, named_plugins
 
 GROUP = "kbga_bench.planners"
+
+Source = EntryPoint | NamedPlugin
 
 _TRUE = frozenset({"true", "yes", "on", "1"})
 _FALSE = frozenset({"false", "no", "off", "0"})
@@ -34,8 +38,8 @@ class PluginInfo:
     """One line of the list of installed planners.
 
     name : the word under which users ask for the planner.
-    distribution, version : of the package that declares it; several, with commas, if it is
-        ambiguous.
+    distribution, version : of the package that declares it, or the file and a hash of its code;
+        several, with commas, if it is ambiguous.
     available : whether it can be loaded.
     reason : "unavailable: ..." and why; None if it is available.
     abilities : what it can do; None if it is not available.
@@ -93,6 +97,15 @@ def load_planner(name: str) -> type[Planner]:
 def available_planners() -> list[PluginInfo]:
     """Import every declared planner and say of each what came of it, sorted by name."""
     return [_describe(name, points) for name, points in sorted(_declared().items())]
+
+
+def planner_version(name: str) -> str | None:
+    """Version of the distribution that declares a planner; None if there is no such planner.
+
+    Nothing is imported; several versions, with commas, if the name is ambiguous.
+    """
+    points = _declared().get(name)
+    return None if points is None else ", ".join(_distribution(point)[1] for point in points)
 
 
 def make_settings(planner_class: type[Planner], mapping: Mapping[str, Any]) -> Any:
@@ -158,10 +171,10 @@ def settings_as_dict(settings: Any) -> dict[str, Any]:
     return {f.name: _plain(getattr(settings, f.name)) for f in dataclasses.fields(settings)}
 
 
-def _declared() -> dict[str, list[EntryPoint]]:
-    declared: dict[str, list[EntryPoint]] = defaultdict(list)
-    for point in entry_points(group=GROUP):
-        declared[point.name].append(point)
+def _declared() -> dict[str, list[Source]]:
+    declared: dict[str, list[Source]] = defaultdict(list)
+    for source in (*entry_points(group=GROUP), *named_plugins()):
+        declared[source.name].append(source)
     return dict(declared)
 
 
@@ -170,42 +183,54 @@ def _did_you_mean(word: str, words: Iterable[str]) -> str:
     return f" Did you mean '{near[0]}'?" if near else ""
 
 
-def _distribution(point: EntryPoint) -> tuple[str, str]:
-    if point.dist is None:
+def _distribution(source: Source) -> tuple[str, str]:
+    if isinstance(source, NamedPlugin):
+        return source.distribution, source.version
+    if source.dist is None:
         return "unknown", "unknown"
-    return point.dist.name, point.dist.version
+    return source.dist.name, source.dist.version
 
 
-def _load(name: str, points: Sequence[EntryPoint]) -> type[Planner]:
-    """Load the one entry point of a name; PluginError holds the bare reason why it can't be."""
-    if len(points) > 1:
-        owners = " and ".join(_distribution(p)[0] for p in points)
-        raise PluginError(f"{owners} both declare it. Uninstall one of them.")
+def _load(name: str, sources: Sequence[Source]) -> type[Planner]:
+    """Load the one source of a name; PluginError holds the bare reason why it can't be."""
+    if len(sources) > 1:
+        owners = " and ".join(_distribution(source)[0] for source in sources)
+        raise PluginError(f"{owners} both declare it. {_one_of(sources)}")
+    place = _place(sources[0])
     try:
         # Other people's code: whatever its import raises must not end the listing.
-        found = points[0].load()
+        found = sources[0].load()
     except PluginError:
-        raise  # the plugin's own sentence, such as how to install what it needs
+        raise  # a sentence of its own, such as how to install what the plugin needs
     except (Exception, SystemExit) as error:
         raise PluginError(f"{type(error).__name__}: {error}") from error
-    if not (isinstance(found, type) and issubclass(found, Planner)):
-        raise PluginError(f"{points[0].value} is not a subclass of suite.planner.Planner.")
+    wrong = flaw(found)
+    if wrong is not None:
+        raise PluginError(f"{place} {wrong}")
     if getattr(found, "name", None) != name:
         raise PluginError(
-            f"{points[0].value} calls itself {getattr(found, 'name', None)!r}. "
+            f"{place} calls itself {getattr(found, 'name', None)!r}. "
             "The entry point and the attribute `name` must be the same."
         )
-    if inspect.isabstract(found):
-        missing = ", ".join(sorted(found.__abstractmethods__))
-        raise PluginError(f"{points[0].value} does not define {missing}.")
-    return found
+    planner: type[Planner] = found
+    return planner
 
 
-def _describe(name: str, points: Sequence[EntryPoint]) -> PluginInfo:
-    owners, versions = zip(*(_distribution(p) for p in points), strict=True)
+def _place(source: Source) -> str:
+    return source.reference if isinstance(source, NamedPlugin) else source.value
+
+
+def _one_of(sources: Sequence[Source]) -> str:
+    if any(isinstance(source, NamedPlugin) for source in sources):
+        return "Give the one of --plugin another name, or leave it out."
+    return "Uninstall one of them."
+
+
+def _describe(name: str, sources: Sequence[Source]) -> PluginInfo:
+    owners, versions = zip(*(_distribution(source) for source in sources), strict=True)
     distribution, version = ", ".join(owners), ", ".join(versions)
     try:
-        planner = _load(name, points)
+        planner = _load(name, sources)
     except PluginError as error:
         return PluginInfo(name, distribution, version, False, f"unavailable: {error}")
     return PluginInfo(name, distribution, version, True, None, planner.abilities)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from suite.planner import Budget, Improvement, PlanStatus
+from suite.planner import Budget, Improvement, PlanStatus, Snapshot
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,7 +98,7 @@ class Cell:
         ]
         if self.world is not None:
             content.append(self.world.as_dict)
-        return hashlib.sha256(canonical_json(content).encode()).hexdigest()[:32]
+        return short_hash(content)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -135,6 +135,7 @@ class RunRecord:
     details : further numbers that the planner gave.
     stderr : the last lines that the process wrote there, if the run failed.
     simulation : of a simulated run, as :func:`suite.dynamic.plain.as_data` gives it.
+    snapshots : of the generations that were asked for; none in a measured run.
     """
 
     cell: Cell
@@ -165,6 +166,7 @@ class RunRecord:
     details: Mapping[str, float] = field(default_factory=dict)
     stderr: str = ""
     simulation: Mapping[str, Any] | None = None
+    snapshots: tuple[Snapshot, ...] = ()
 
 
 def canonical_json(value: Any) -> str:
@@ -176,3 +178,14 @@ def canonical_json(value: Any) -> str:
     '{"a":[2.0,null],"b":1}'
     """
     return json.dumps(value, sort_keys=True, separators=(",", ":"), default=str)
+
+
+def short_hash(value: Any) -> str:
+    """Hash of plain data: 32 hexadecimal digits, the same on every machine.
+
+    Examples
+    --------
+    >>> short_hash({"b": 1, "a": 2}) == short_hash({"a": 2, "b": 1})
+    True
+    """
+    return hashlib.sha256(canonical_json(value).encode()).hexdigest()[:32]

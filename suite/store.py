@@ -6,6 +6,7 @@ and nothing else. pandas reads it; see :func:`read_runs`.
 
 import json
 import sqlite3
+import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import fields
@@ -19,7 +20,8 @@ from filelock import BaseFileLock, FileLock, Timeout
 from numpy.typing import NDArray
 
 from suite.errors import StoreError
-from suite.record import Cell, RunRecord, canonical_json
+from suite.planner import Snapshot
+from suite.record import Cell, RunRecord, canonical_json, short_hash
 
 APPLICATION_ID = 0x4B424741  # "KBGA"
 SCHEMA_VERSION = 2
@@ -43,7 +45,7 @@ CREATE TABLE runs (
     wall_s REAL, time_to_best_s REAL, cpu_s REAL, cpu_to_best_s REAL,
     load REAL, contended INTEGER,
     planner TEXT NOT NULL, distribution TEXT NOT NULL, version TEXT NOT NULL,
-    settings TEXT NOT NULL, world_settings TEXT, cold INTEGER NOT NULL,
+    settings TEXT NOT NULL, settings_hash TEXT NOT NULL, world_settings TEXT, cold INTEGER NOT NULL,
     budget_wall_s REAL, budget_generations INTEGER, budget_checks INTEGER,
     scene_source TEXT NOT NULL, scene_hash TEXT NOT NULL,
     host TEXT, started_at TEXT, details TEXT NOT NULL, stderr TEXT NOT NULL
@@ -57,6 +59,10 @@ CREATE TABLE events (
 CREATE TABLE traces (key TEXT PRIMARY KEY REFERENCES runs (key), trace TEXT NOT NULL);
 CREATE TABLE paths (key TEXT PRIMARY KEY REFERENCES runs (key), xy BLOB NOT NULL);
 CREATE TABLE simulations (key TEXT PRIMARY KEY REFERENCES runs (key), data TEXT NOT NULL);
+CREATE TABLE snapshots (
+    key TEXT NOT NULL REFERENCES runs (key), generation INTEGER NOT NULL, data BLOB NOT NULL,
+    PRIMARY KEY (key, generation)
+) WITHOUT ROWID;
 CREATE TABLE wanted (
     matrix TEXT NOT NULL, key TEXT NOT NULL, scene TEXT NOT NULL, variant TEXT NOT NULL,
     PRIMARY KEY (matrix, key)
@@ -67,14 +73,14 @@ CREATE TABLE conflicts (
 ) WITHOUT ROWID;
 """
 
-BELONGINGS = ("events", "traces", "paths", "simulations")
+BELONGINGS = ("events", "traces", "paths", "simulations", "snapshots")
 """Tables that hold more of a run, by its key."""
 
 _CELL_COLUMNS = tuple(f.name for f in fields(Cell) if f.name not in ("settings", "budget", "world"))
 _OUTCOME_COLUMNS = tuple(
     f.name
     for f in fields(RunRecord)
-    if f.name not in ("cell", "improvements", "trace", "path", "details", "simulation")
+    if f.name not in ("cell", "improvements", "trace", "path", "details", "simulation", "snapshots")
 )
 
 
@@ -172,6 +178,13 @@ class Store:
             if record.simulation is not None:
                 data = json.dumps(record.simulation)
                 connection.execute("INSERT INTO simulations VALUES (?, ?)", (key, data))
+
+    def add_snapshots(self, key: str, snapshots: Iterable[Snapshot]) -> None:
+        """Write the populations of a row that is there, in place of those it had."""
+        rows = [(key, snapshot.generation, _packed(snapshot)) for snapshot in snapshots]
+        with self._writing() as connection:
+            connection.execute("DELETE FROM snapshots WHERE key = ?", (key,))
+            connection.executemany("INSERT INTO snapshots VALUES (?, ?, ?)", rows)
 
     @contextmanager
     def attached(self, other: Path) -> Iterator[sqlite3.Connection]:
@@ -363,6 +376,23 @@ def read_paths(path: Path) -> dict[str, NDArray[np.float64]]:
     return {key: np.frombuffer(xy, dtype="<f8").reshape(-1, 2) for key, xy in rows}
 
 
+def read_snapshots(path: Path) -> dict[str, list[Snapshot]]:
+    """Populations of the runs that they were kept of, generation by generation, by key."""
+    with closing(_open_for_reading(path)) as connection, _explained(path):
+        rows = connection.execute("SELECT * FROM snapshots ORDER BY key, generation").fetchall()
+    found: dict[str, list[Snapshot]] = {}
+    for key, generation, data in rows:
+        found.setdefault(key, []).append(_unpacked(generation, data))
+    return found
+
+
+def read_trace(path: Path, key: str) -> pd.DataFrame:
+    """Measures of the generations of one run; empty if it did not describe them."""
+    with closing(_open_for_reading(path)) as connection, _explained(path):
+        row = connection.execute("SELECT trace FROM traces WHERE key = ?", (key,)).fetchone()
+    return pd.DataFrame(json.loads(row[0]) if row else {})
+
+
 def read_simulations(path: Path) -> pd.DataFrame:
     """What came of the simulated runs: a row for each.
 
@@ -433,6 +463,7 @@ def _as_row(record: RunRecord) -> dict[str, Any]:
     row["key"] = cell.key
     row["status"] = str(record.status)
     row["settings"] = canonical_json(cell.settings)
+    row["settings_hash"] = short_hash(cell.settings)
     world = cell.world
     row["world"] = None if world is None else world.name
     row["world_settings"] = None if world is None else canonical_json(world.settings)
@@ -448,6 +479,23 @@ def _insert(table: str, row: Mapping[str, Any]) -> str:
 def _columns(trace: tuple[Mapping[str, float], ...]) -> dict[str, list[float | None]]:
     names = dict.fromkeys(name for measures in trace for name in measures)
     return {name: [measures.get(name) for measures in trace] for name in names}
+
+
+def _packed(snapshot: Snapshot) -> bytes:
+    """A population as compressed JSON, rounded to a micrometre: it is for looking at."""
+    best = snapshot.best
+    data = {
+        "best": None if best is None else best.round(6).tolist(),
+        "paths": [path.round(6).tolist() for path in snapshot.paths],
+    }
+    return zlib.compress(json.dumps(data, separators=(",", ":")).encode(), level=9)
+
+
+def _unpacked(generation: int, packed: bytes) -> Snapshot:
+    data = json.loads(zlib.decompress(packed))
+    paths = tuple(np.array(path, dtype=np.float64) for path in data["paths"])
+    best = None if data["best"] is None else np.array(data["best"], dtype=np.float64)
+    return Snapshot(generation, paths, best)
 
 
 def _missing(path: Path) -> StoreError:

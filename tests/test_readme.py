@@ -15,12 +15,12 @@ README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 
 def test_the_planner_of_the_readme_plans():
     (source,) = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
-    names: dict = {}
+    names: dict = {"__name__": "readme"}
     exec(compile(source, "README.md", "exec"), names)
-    planner = names["RandomDetour"]()
+    planner = names["SmallPRM"]()
     scene = load_scene("obstacles_20")
     plan = planner.plan(
-        scene, scene.query(), Budget(generations=3000), np.random.default_rng(1), Recorder()
+        scene, scene.query(), Budget(generations=4), np.random.default_rng(1), Recorder()
     )
     assert plan.status == PlanStatus.SOLVED
     assert judge(scene, scene.query(), plan.path).valid

@@ -8,8 +8,8 @@ import random
 import select
 import signal
 import traceback
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
 from multiprocessing import forkserver
 from multiprocessing.connection import Connection
 
@@ -18,7 +18,7 @@ from numpy.random import mtrand
 
 from suite.harness.cell import run_cell
 from suite.harness.family import adopt_orphans, has_children
-from suite.planner import PlanStatus
+from suite.planner import PlanStatus, Recorder
 from suite.record import Cell, RunRecord
 
 PLANNING = "planning"
@@ -44,6 +44,7 @@ def run_in_child(
     messages: "Connection[str | Outcome, None]",
     stderr: "Connection[None, None]",
     core: int | None,
+    snapshots_of: Collection[int] = (),
 ) -> None:
     """Run a cell and send what came of it; the target of the process of one run.
 
@@ -56,6 +57,8 @@ def run_in_child(
         Takes what the process writes to its standard error.
     core : int, optional
         The processor to stay on.
+    snapshots_of : collection of int
+        Generations of which the record is to have snapshots.
     """
     process = os.getpid()
     _become_own_group()
@@ -64,18 +67,20 @@ def run_in_child(
     _die_with_parent()
     _pin(core)
     _seed_globals(cell)
-    record = _record(cell, lambda: messages.send(PLANNING))
+    recorder = Recorder(snapshot_of=snapshots_of.__contains__)
+    record = _record(cell, recorder, lambda: messages.send(PLANNING))
     # A planner that forks may come back twice.
     if os.getpid() == process:
+        record = replace(record, snapshots=tuple(recorder.snapshots))
         messages.send(Outcome(record, alone=not has_children()))
     # Without the interpreter's farewell: destructors of a planner's libraries may hang or crash,
     # and threads that it left running would be waited for.
     os._exit(0)
 
 
-def _record(cell: Cell, before_plan: Callable[[], None]) -> RunRecord:
+def _record(cell: Cell, recorder: Recorder, before_plan: Callable[[], None]) -> RunRecord:
     try:
-        return run_cell(cell, before_plan=before_plan)
+        return run_cell(cell, recorder=recorder, before_plan=before_plan)
     except BaseException as error:
         # KeyboardInterrupt too: nobody is at the keyboard of this process, a planner raised it.
         reason = "".join(traceback.format_exception_only(error)).strip()

@@ -12,7 +12,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from multiprocessing.connection import wait
@@ -63,7 +63,9 @@ class _StoppedError(Exception):
     """The runs in flight were killed before this one had a process."""
 
 
-def run_isolated(cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
+def run_isolated(
+    cell: Cell, limits: Limits, warmth: Warmth, *, snapshots_of: Collection[int] = ()
+) -> RunRecord:
     """Run one cell in a process of its own. Safe to call from several threads.
 
     Parameters
@@ -73,6 +75,8 @@ def run_isolated(cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
         When to kill it.
     warmth : Warmth
         For the fork server, if this call is the first to need one.
+    snapshots_of : collection of int
+        Generations of which the record is to have snapshots; none in a measured run.
 
     Returns
     -------
@@ -87,7 +91,7 @@ def run_isolated(cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
     """
     started_at = datetime.now(UTC).isoformat(timespec="seconds")
     try:
-        with own_core() as core, _started(cell, warmth, core) as child:
+        with own_core() as core, _started(cell, warmth, core, snapshots_of) as child:
             record = _outcome(child, limits)
     except _StoppedError:
         return RunRecord(cell, PlanStatus.CRASHED, "was stopped before it began.")
@@ -102,6 +106,17 @@ def start_server(warmth: Warmth) -> None:
     """Start the fork server, if it does not run yet; it warms itself while the caller goes on."""
     with _BOOKKEEPING, _server_environment(warmth):
         multiprocessing.forkserver.ensure_running()
+
+
+def stop_server() -> None:
+    """End the fork server, when no run is in flight: the next run starts another, newly warmed."""
+    server = multiprocessing.forkserver._forkserver
+    with _BOOKKEEPING:
+        pid = _server_pid()
+        if pid is not None:
+            # It may be in the middle of its warming, which can take minutes.
+            kill_family(pid)
+        server._stop()  # type: ignore[attr-defined]
 
 
 def kill_running() -> None:
@@ -139,13 +154,15 @@ class _Child:
 
 
 @contextlib.contextmanager
-def _started(cell: Cell, warmth: Warmth, core: int | None) -> Iterator[_Child]:
+def _started(
+    cell: Cell, warmth: Warmth, core: int | None, snapshots_of: Collection[int]
+) -> Iterator[_Child]:
     """A process that runs the cell; it and its descendants are gone afterwards."""
     receiver, sender = _CONTEXT.Pipe(duplex=False)
     error_reader, error_writer = _CONTEXT.Pipe(duplex=False)
     with receiver, error_reader:
         with sender, error_writer:
-            process = _start((cell, sender, error_writer, core), warmth)
+            process = _start((cell, sender, error_writer, core, snapshots_of), warmth)
         child = _Child(cell, process, Inbox(receiver), Tail(error_reader))
         try:
             yield child
@@ -261,7 +278,8 @@ def _main_module() -> tuple[str | None, str | None]:
 @contextlib.contextmanager
 def _server_environment(warmth: Warmth) -> Iterator[None]:
     """The settings that a fork server started now inherits; variables are put back afterwards."""
-    _CONTEXT.set_forkserver_preload([Warmth.__module__])
+    # The warm-up comes last: it leaves alone, for good, what is loaded by then.
+    _CONTEXT.set_forkserver_preload([run_in_child.__module__, Warmth.__module__])
     wanted = replace(warmth, main=_main_module()).environment()
     before = {name: os.environ.get(name) for name in wanted}
     os.environ.update(wanted)

@@ -1,20 +1,20 @@
 """A matrix, run: only what the store lacks, each row kept when its run ends.
 
-``concurrent.futures.Executor`` is the only idea of "where": here threads that wait for local
+``concurrent.futures.Executor`` is the only idea of "where": by default threads that wait for local
 processes. Rows come back to the caller's thread, which is the store's one writer.
 """
 
 import os
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
-from contextlib import closing, contextmanager
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from contextlib import closing
 from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
 
-from suite.harness.cores import honest_jobs
-from suite.harness.isolate import kill_running, run_isolated, start_server
+from suite.harness.executors import Crew, crew, record_of
+from suite.harness.isolate import start_server
 from suite.harness.machine import provenance
 from suite.harness.matrix import Limits, Matrix
 from suite.harness.warm import Warmth
@@ -24,8 +24,6 @@ from suite.store import Store
 
 ORDER_SEED = 2003
 """Of the order in which runs are started; any number will do, as long as it stays."""
-
-ABANDON_POLL_S = 0.02
 
 FAILURES = frozenset(
     {
@@ -84,6 +82,7 @@ class Progress:
     failed : runs of this session that ended in one of FAILURES.
     running : labels of the runs that were handed out and are not back.
     last : the row that came last.
+    left : runs that still go on elsewhere after an interruption; their rows are dropped.
     planners : by the name of each variant, all its runs.
     """
 
@@ -93,6 +92,7 @@ class Progress:
     failed: int = 0
     running: list[str] = field(default_factory=list)
     last: RunRecord | None = None
+    left: int = 0
     planners: dict[str, Tally] = field(default_factory=dict)
 
     def summary(self) -> str:
@@ -120,13 +120,15 @@ def run_matrix(
     store : Store
         Open for writing.
     jobs : int, optional
-        Runs at a time; default: what leaves their timing honest.
+        Runs at a time; default: what leaves their timing honest; of a dask cluster the number of
+        its threads.
     quick : bool
         Only the first two seeds.
     which : Which
         Which rows that are there are run again.
     executor : Executor, optional
-        Where the runs are waited for; default: threads of this process.
+        Where the runs are waited for, each in a process that its worker starts; default: threads
+        of this process. It is left open.
     on_progress : callable
         Told of each start and each row.
 
@@ -137,10 +139,12 @@ def run_matrix(
 
     Raises
     ------
+    HarnessError
+        If the executor is lost, or its workers can do no runs. All finished rows are in the store.
     KeyboardInterrupt
-        After Ctrl-C, when the runs in flight are killed. All finished rows are in the store.
+        After Ctrl-C, when the runs in flight are killed; a note says if some could not be. All
+        finished rows are in the store.
     """
-    jobs = jobs or honest_jobs()
     cells = matrix.cells(quick=quick)
     there = store.statuses()
     missing = to_run(cells, there, which)
@@ -153,15 +157,21 @@ def run_matrix(
     if executor is None:
         start_server(warmth)
     distributions = {(cell.distribution, cell.version) for cell in missing}
-    store.begin_session(provenance(matrix.name, distributions) | {"pid": os.getpid()})
-    with _executor(executor, jobs) as own:
-        runs = _run_each(missing, matrix.limits, warmth, own, jobs, progress)
-        with closing(runs):
-            for record in runs:
-                if record is not None:
-                    store.add(record, replace=record.cell.key in there)
-                    _count(record, progress)
-                on_progress(progress)
+    with crew(executor, jobs) as own:
+        place = {"pid": os.getpid(), **own.provenance()}
+        store.begin_session(provenance(matrix.name, distributions) | place)
+        runs = _run_each(missing, matrix.limits, warmth, own, progress)
+        try:
+            with closing(runs):
+                for record in runs:
+                    if record is not None:
+                        store.add(record, replace=record.cell.key in there)
+                        _count(record, progress)
+                    on_progress(progress)
+        except KeyboardInterrupt as interrupt:
+            if progress.left:
+                interrupt.add_note(_left_in_words(progress.left))
+            raise
     return progress
 
 
@@ -213,13 +223,9 @@ def warmth_for(cells: Iterable[Cell], limits: Limits) -> Warmth:
     )
 
 
-@contextmanager
-def _executor(given: Executor | None, jobs: int) -> Iterator[Executor]:
-    if given is not None:
-        yield given
-        return
-    with ThreadPoolExecutor(jobs, thread_name_prefix="run") as own:
-        yield own
+def _left_in_words(left: int) -> str:
+    runs = "1 run goes" if left == 1 else f"{left} runs go"
+    return f"{runs} on elsewhere, to the end or the limit; nothing of that is kept."
 
 
 def _count(record: RunRecord, progress: Progress) -> None:
@@ -233,8 +239,7 @@ def _run_each(
     cells: Sequence[Cell],
     limits: Limits,
     warmth: Warmth,
-    executor: Executor,
-    jobs: int,
+    crew: Crew,
     progress: Progress,
 ) -> Generator[RunRecord | None, None, None]:
     """Yield each record when it is there, and None when runs were started.
@@ -245,25 +250,16 @@ def _run_each(
     in_flight: dict[Future[RunRecord], Cell] = {}
     try:
         while True:
+            jobs = crew.size()
             # One more than can run: it is ready when a run ends, while that one's row is written.
             while len(in_flight) < jobs + 1 and (cell := next(queue, None)) is not None:
-                in_flight[executor.submit(run_isolated, cell, limits, warmth)] = cell
+                in_flight[crew.start(cell, limits, warmth)] = cell
             progress.running = [cell.label for cell in list(in_flight.values())[:jobs]]
             yield None
             if not in_flight:
                 return
             done, _ = wait(in_flight, return_when=FIRST_COMPLETED)
             for future in done:
-                del in_flight[future]
-                yield future.result()
+                yield record_of(future, in_flight.pop(future))
     finally:
-        _abandon(in_flight)
-
-
-def _abandon(futures: Iterable[Future[RunRecord]]) -> None:
-    """Kill runs in flight. Their records are dropped: the next session runs them again."""
-    started = [future for future in futures if not future.cancel()]
-    while started:
-        # Again and again: a thread may have been about to start its process.
-        kill_running()
-        started = list(wait(started, timeout=ABANDON_POLL_S).not_done)
+        progress.left = crew.abandon(in_flight) if in_flight else 0

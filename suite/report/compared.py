@@ -51,8 +51,11 @@ def families(
         The planner's name; where a planner has several families, also what they differ in.
     """
     left_out = set(apart_from)
+    # Few different dicts stand in many rows.
+    different = {id(values): values for values in settings}
+    texts = {number: _canonical(values, left_out) for number, values in different.items()}
     keys = [
-        (planner, _canonical(values, left_out), budget)
+        (planner, texts[id(values)], budget)
         for planner, values, budget in zip(
             runs["planner"], settings, map(str, runs[_BUDGET].to_numpy().tolist()), strict=True
         )

@@ -76,11 +76,11 @@ def plot_convergence(steps: Steps, clock: str) -> Figure:
     """
     name, label, unit, shift = CLOCKS[clock]
     planners = numbered(steps.runs["variant"])
-    scenes = list(dict.fromkeys(scene for scene, _ in _groups(steps, clock)))
+    scenes = list(dict.fromkeys(scene for scene, _ in counted_groups(steps, clock)))
     drawn = only(steps, steps.runs["place"].isin(scenes[:PANELS_AT_MOST]).to_numpy())
-    groups = _groups(drawn, clock)
-    grid = _grid(drawn.clocks[clock] + shift)
-    bands = _bands(drawn, clock, grid - shift, groups)
+    groups = counted_groups(drawn, clock)
+    grid = grid_over(drawn.clocks[clock] + shift)
+    bands = gap_bands(drawn, clock, grid - shift, groups)
     panels = scene_panels(scenes)
     for (scene, planner), band in bands.items():
         _draw_band(panels.axes[scene], grid * unit, 100.0 * band, planners[planner])
@@ -103,7 +103,7 @@ def _silent(planners: Collection[str], clock: str) -> str:
     )
 
 
-def _groups(steps: Steps, clock: str) -> dict[tuple[str, str], NDArray[np.int64]]:
+def counted_groups(steps: Steps, clock: str) -> dict[tuple[str, str], NDArray[np.int64]]:
     """Numbers of the runs of each scene with an optimum and planner that counts on this clock.
 
     Of a planner that never found a path nobody knows: it counts, and has no line.
@@ -116,14 +116,14 @@ def _groups(steps: Steps, clock: str) -> dict[tuple[str, str], NDArray[np.int64]
     return groups_of(steps, wanted)
 
 
-def _grid(shown: Array) -> Array:
+def grid_over(shown: Array) -> Array:
     """Places on the axis, evenly spaced on its logarithm, that hold all steps."""
     shown = shown[np.isfinite(shown) & (shown > 0.0)]
     low, high = float(shown.min()), float(shown.max())
     return np.geomspace(low, max(1.05 * high, 10.0 * low), POINTS)
 
 
-def _bands(
+def gap_bands(
     steps: Steps,
     clock: str,
     values: Array,

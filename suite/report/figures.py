@@ -173,7 +173,7 @@ def save(figure: Figure, file: Path) -> None:
     suffix = file.suffix.lower()
     try:
         if suffix == ".png":
-            _save_png(figure, file)
+            file.write_bytes(as_png(figure))
         else:
             with plt.rc_context({"svg.hashsalt": "kbga-bench"}):
                 figure.savefig(file, metadata=dated.get(suffix))
@@ -183,11 +183,16 @@ def save(figure: Figure, file: Path) -> None:
         plt.close(figure)
 
 
-def _save_png(figure: Figure, file: Path) -> None:
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format="png", dpi=RASTER_DPI)
+def as_png(figure: Figure) -> bytes:
+    """Draw a figure and let go of it; the same figure gives the same bytes."""
+    drawn, small = io.BytesIO(), io.BytesIO()
+    try:
+        figure.savefig(drawn, format="png", dpi=RASTER_DPI)
+    finally:
+        plt.close(figure)
     with PIL.Image.open(drawn) as image:
-        image.convert("RGB").quantize(RASTER_COLOURS).save(file, optimize=True)
+        image.convert("RGB").quantize(RASTER_COLOURS).save(small, format="png", optimize=True)
+    return small.getvalue()
 
 
 def _scene_figure(scene: Scene) -> tuple[Figure, Axes]:

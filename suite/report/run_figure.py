@@ -1,23 +1,16 @@
 """The picture of one run that ``kbga-bench plan --plot`` draws."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
 from suite.exact import shortest_path
+from suite.planner import Snapshot
 from suite.record import RunRecord
 from suite.report.figures import plot_run, save
 from suite.scenes.catalogue import load_scene
 
-FIRST_POPULATION = "first population"
-"""Name of the snapshot that planners with a population take of it."""
 
-
-def draw_record(
-    record: RunRecord, snapshots: Mapping[str, Sequence[NDArray[np.float64]]], file: Path
-) -> None:
+def draw_record(record: RunRecord, snapshots: Sequence[Snapshot], file: Path) -> None:
     """Draw a run, its first population if it took a snapshot of it, and the exact optimum.
 
     Raises
@@ -35,7 +28,7 @@ def draw_record(
         query,
         record.path,
         path_label=f"{cell.variant}, seed {cell.seed}: {outcome}",
-        first_population=snapshots.get(FIRST_POPULATION, ()),
+        first_population=snapshots[0].paths if snapshots else (),
         optimum=exact.path,
         optimum_label=f"optimum: {exact.length:.2f} m",
     )

@@ -86,19 +86,19 @@ def _markdown(table: Table) -> str:
 def _grid(table: Table, layout: str, headers: list[str]) -> str:
     frame = table.frame
     return tabulate(
-        _as_texts(table).to_numpy().tolist(),
+        as_texts(table).to_numpy().tolist(),
         headers=headers,
         tablefmt=layout,
         disable_numparse=True,
-        colalign=["right" if _is_numeric(frame[c]) else "left" for c in frame.columns]
+        colalign=["right" if is_numeric(frame[c]) else "left" for c in frame.columns]
         if len(frame)
         else None,
     )
 
 
 def _latex(table: Table) -> str:
-    columns = "".join("r" if _is_numeric(table.frame[c]) else "l" for c in table.frame.columns)
-    texts = _as_texts(table)
+    columns = "".join("r" if is_numeric(table.frame[c]) else "l" for c in table.frame.columns)
+    texts = as_texts(table)
     body = texts.style.hide(axis="index").format(escape="latex")
     body = body.format_index(escape="latex", axis=1)
     written = body.to_latex(
@@ -128,7 +128,8 @@ def _escaped(text: str) -> str:
     return text.replace("%", r"\%").replace("_", r"\_").replace("&", r"\&").replace("#", r"\#")
 
 
-def _is_numeric(column: "pd.Series[Any]") -> bool:
+def is_numeric(column: "pd.Series[Any]") -> bool:
+    """Whether a column holds numbers, or nothing else that is there."""
     if pd.api.types.is_numeric_dtype(column):
         return True
     # Counts and measures in one column are objects, so that counts stay whole.
@@ -140,7 +141,8 @@ def _is_missing(value: Any) -> bool:
     return value is None or value is pd.NA or (isinstance(value, float) and math.isnan(value))
 
 
-def _as_texts(table: Table) -> pd.DataFrame:
+def as_texts(table: Table) -> pd.DataFrame:
+    """The cells as they are printed for reading; missing ones are empty."""
     columns = {}
     for name in table.frame.columns:
         digits = _digits(str(name))

@@ -98,21 +98,25 @@ class Rows:
 
 
 def verdict_table(rows: Rows) -> Table | None:
-    """All figures of the paper with ours; None if no run answers any.
+    """The figures of the paper that these runs answer, with ours; None if they answer none.
 
     Parameters
     ----------
     rows : Rows
     """
     found = [(figure, verdict(figure, rows)) for figure in reported()]
-    if all(given.word == NO_DATA for _, given in found):
+    frame = pd.DataFrame(
+        [_as_row(figure, given) for figure, given in found if given.word != NO_DATA]
+    )
+    if frame.empty:
         return None
-    frame = pd.DataFrame([_as_row(figure, given) for figure, given in found])
     counts = frame["verdict"].value_counts()
-    words = (AGREES, BETTER, WORSE, NOT_COMPARABLE, NO_DATA)
+    words = (AGREES, BETTER, WORSE, NOT_COMPARABLE)
     told = ", ".join(f"{counts[word]} {word}" for word in words if word in counts)
+    missing = len(found) - len(frame)
+    rest = f" For {missing} more there are no such runs here." if missing else ""
     title = "Every figure of the paper, and ours"
-    return Table("paper-figures", title, frame, f"{len(frame)} figures: {told}. {NOTE}")
+    return Table("paper-figures", title, frame, f"{len(frame)} figures: {told}.{rest} {NOTE}")
 
 
 def verdict(figure: Reported, rows: Rows) -> Verdict:

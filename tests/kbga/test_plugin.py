@@ -119,13 +119,13 @@ def test_the_trace_has_a_row_per_generation_the_first_population_included():
     assert recorder.trace[-1]["checks"] == made.checks
 
 
-def test_the_first_population_is_kept_only_if_asked_for():
-    asked, not_asked = Recorder(keep_snapshots=True), Recorder()
+def test_populations_are_shown_only_if_asked_for():
+    asked, not_asked = Recorder(snapshot_of={0, 3}.__contains__), Recorder()
     first, second = plan(recorder=asked), plan(recorder=not_asked)
-    assert not_asked.snapshots == {}
-    assert list(asked.snapshots) == ["first population"]
-    assert len(asked.snapshots["first population"]) == 12
-    assert all(path[0].tolist() == [1, 1] for path in asked.snapshots["first population"])
+    assert not_asked.snapshots == []
+    assert [snapshot.generation for snapshot in asked.snapshots] == [0, 3]
+    assert all(len(snapshot.paths) == 12 for snapshot in asked.snapshots)
+    assert all(path[0].tolist() == [1, 1] for path in asked.snapshots[0].paths)
     assert np.array_equal(first.path, second.path)
 
 

@@ -17,6 +17,7 @@ from suite.plugins import (
 )
 
 GOOD = """
+from dataclasses import dataclass
 from suite.planner import Abilities, Plan, Planner, PlanStatus
 
 class Walk(Planner):
@@ -31,6 +32,31 @@ class Renamed(Walk):
 
 class Unfinished(Planner):
     name = "unfinished"
+
+class Short(Walk):
+    name = "short"
+
+    def plan(self, scene, query):
+        return Plan(PlanStatus.EXHAUSTED)
+
+class Newer(Walk):
+    name = "newer"
+    interface = 2
+
+class Loose(Walk):
+    name = "loose"
+    Settings = dict
+
+class Needy(Walk):
+    name = "needy"
+
+    @dataclass(frozen=True)
+    class Settings:
+        step: float
+
+class Boastful(Walk):
+    name = "boastful"
+    abilities = {"anytime": True}
 
 nothing = 42
 """
@@ -153,6 +179,11 @@ def test_a_plugin_that_says_itself_why_it_is_unavailable_is_quoted(install):
         ("nothing", "nothing", "is not a subclass of suite.planner.Planner"),
         ("walker", "Renamed", "calls itself 'another-name'"),
         ("unfinished", "Unfinished", "does not define plan"),
+        ("short", "Short", "has plan(self, scene, query). It must be plan(self, scene, query, bu"),
+        ("newer", "Newer", "is written for version 2 of the plugin interface; this kbga-bench has"),
+        ("loose", "Loose", "has Settings that are not a dataclass"),
+        ("needy", "Needy", "has Settings that can't be made without arguments (TypeError: "),
+        ("boastful", "Boastful", "has abilities of the type dict"),
     ],
 )
 def test_what_is_no_planner_of_that_name_is_unavailable(install, name, attribute, reason):

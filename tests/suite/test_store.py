@@ -10,7 +10,7 @@ import pytest
 
 from suite.errors import StoreError
 from suite.planner import PlanStatus
-from suite.record import World
+from suite.record import World, short_hash
 from suite.store import (
     open_store,
     read_events,
@@ -49,6 +49,7 @@ def test_a_row_comes_back_as_it_was_written(file):
     assert row["generation_of_best"] == 50
     assert row["budget_generations"] == 100
     assert row["settings"] == '{"population_size":50}'
+    assert row["settings_hash"] == short_hash({"population_size": 50})
     assert row["details"] == '{"restarts":2.0}'
     assert not row["contended"]
     assert read_sessions(file) == [{"id": 1, "matrix": "m", "python": "3.11"}]

@@ -12,6 +12,7 @@ import signal
 import sys
 import threading
 import time
+import types
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -72,6 +73,18 @@ class Careless(_Base):
         by = query.start + np.random.random(2)
         path = np.array([query.start, by, query.start, *self.path(scene, query)[1:]])
         return Plan(PlanStatus.SOLVED, path)
+
+
+class CountsLateImports(_Base):
+    """Says how many modules of the suite were loaded after the fork server was warmed."""
+
+    name = "counts-late-imports"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        # The server takes what it has loaded out of the collector's sight.
+        seen = [o for o in gc.get_objects() if isinstance(o, types.ModuleType)]
+        late = sum(module.__name__.startswith("suite.") for module in seen)
+        return Plan(PlanStatus.SOLVED, self.path(scene, query), details={"late": late})
 
 
 class Sleeper(_Base):
@@ -519,3 +532,19 @@ class EatsInWarmUp(_Base):
 
     def warm_up(self):
         _eat()
+
+
+class WrongSignature(_Base):
+    name = "wrong-signature"
+
+    def plan(self, scene, query):
+        return Plan(PlanStatus.EXHAUSTED)
+
+
+class NewerInterface(_Base):
+    name = "newer-interface"
+    interface = 2
+
+
+class NoPlan(Planner):
+    name = "no-plan"

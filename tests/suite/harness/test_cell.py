@@ -87,8 +87,8 @@ def test_a_refused_run_starts_no_clock(hostile, wall_file):
     assert record.wall_s is None
 
 
-def test_snapshots_are_kept_if_asked_for(hostile, wall_file):
-    recorder = Recorder(keep_snapshots=True)
+def test_what_a_planner_reports_is_there_for_the_caller_afterwards(hostile, wall_file):
+    recorder = Recorder()
     run_cell(cell_for(str(wall_file), "wanderer", seed=0), recorder=recorder)
     assert len(recorder.improvements) == 2
 

@@ -45,13 +45,17 @@ def test_every_cell_becomes_a_row_whatever_its_planner_does(matrix, run):
         "cheats": "invalid",
         "gives-up": "exhausted",
         "broken": "error",
+        "wrong-signature": "error",
+        "newer-interface": "error",
+        "no-plan": "error",
     }
     end = run(matrix(*wanted, seeds=1))
     runs = read_runs(run.file).set_index("variant")
     assert runs["status"].to_dict() == wanted
     assert list(runs.index) == list(wanted)
-    assert (end.wanted, end.done, end.found, end.failed) == (9, 9, 0, 6)
-    assert "unavailable" in runs.loc["broken", "reason"]
+    assert (end.wanted, end.done, end.found, end.failed) == (12, 12, 0, 9)
+    for planner in ("broken", "wrong-signature", "newer-interface", "no-plan"):
+        assert f"planner '{planner}' is unavailable: " in runs.loc[planner, "reason"]
 
 
 def test_a_second_run_runs_only_what_is_missing(matrix, run):

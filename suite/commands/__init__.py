@@ -1,0 +1,1 @@
+"""The commands of ``kbga-bench``, by what they are about; each parses, calls, prints."""

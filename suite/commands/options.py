@@ -1,0 +1,54 @@
+"""Arguments and options that several commands share."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+class TextFormat(StrEnum):
+    """How a single result is printed."""
+
+    TEXT = "text"
+    JSON = "json"
+
+
+class TableFormat(StrEnum):
+    """How tables are printed; see :class:`suite.report.table.Format`."""
+
+    TABLE = "table"
+    CSV = "csv"
+    MARKDOWN = "markdown"
+    LATEX = "latex"
+
+
+SceneArgument = Annotated[
+    str, typer.Argument(metavar="SCENE", help="Name in the catalogue, or path of a scene file.")
+]
+StoreArgument = Annotated[Path, typer.Argument(metavar="STORE", help="Result store (SQLite).")]
+PlannerOption = Annotated[str, typer.Option(help="Name of the planner; see `list planners`.")]
+SeedOption = Annotated[int, typer.Option(min=0, help="Of the random stream.")]
+QueryOption = Annotated[str | None, typer.Option(help="Name of the query; default: the first.")]
+SettingsOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="A setting of the planner; repeatable."),
+]
+PluginOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--plugin",
+        metavar="FILE",
+        help="Planners in FILE.py, or one as FILE.py:CLASS or MODULE:CLASS, without installing "
+        "them; repeatable.",
+    ),
+]
+TextStyle = Annotated[TextFormat, typer.Option("--format", help="For people or programs.")]
+TableStyle = Annotated[TableFormat, typer.Option("--format", help="How to print them.")]
+
+
+def use_plugins(references: list[str] | None) -> None:
+    """Make the planners of ``--plugin`` known to this process and those that it starts."""
+    from suite.plugin_file import name_plugins
+
+    name_plugins(references or [])

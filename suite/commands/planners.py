@@ -1,0 +1,237 @@
+"""Commands that run one planner: plan, simulate, check, new-planner.
+
+Floors above the planner interface are imported inside the commands: pandas and matplotlib take
+longer to import than ``list`` takes to answer.
+"""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from suite.commands.options import (
+    PlannerOption,
+    PluginOption,
+    QueryOption,
+    SceneArgument,
+    SeedOption,
+    SettingsOption,
+    TextFormat,
+    TextStyle,
+    use_plugins,
+)
+from suite.commands.output import print_json
+
+
+class Charge(StrEnum):
+    """What simulated time planning takes; see :class:`suite.dynamic.settings.Charge`."""
+
+    MEASURED = "measured"
+    ZERO = "zero"
+
+
+def plan(
+    scene: SceneArgument,
+    planner: PlannerOption,
+    seed: SeedOption = 0,
+    query: QueryOption = None,
+    settings: SettingsOption = None,
+    plugin: PluginOption = None,
+    wall_s: Annotated[float | None, typer.Option(help="Budget: seconds of wall time.")] = None,
+    generations: Annotated[
+        int | None, typer.Option(help="Budget: generations or iterations.")
+    ] = None,
+    checks: Annotated[int | None, typer.Option(help="Budget: collision checks.")] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw the run: .png, .pdf or .svg.")
+    ] = None,
+    style: TextStyle = TextFormat.TEXT,
+) -> None:
+    """Run one planner once, here and now, and say what came of it.
+
+    Exit code 0 if it found a path or proved that there is none, 1 otherwise.
+
+    Example: kbga-bench plan zigzag --planner kbga --seed 7 --generations 60 --plot zigzag.png
+    """
+    from suite.harness.cell import run_cell
+    from suite.harness.single import as_data, as_text, cell_for, parse_settings, succeeded
+    from suite.planner import Budget, Recorder
+
+    use_plugins(plugin)
+    cell = cell_for(
+        scene,
+        planner,
+        seed=seed,
+        query=query,
+        settings=parse_settings(settings or []),
+        budget=Budget(wall_s, generations, checks),
+    )
+    # Of the first population only: more would slow down the run that is timed.
+    recorder = Recorder(snapshot_of=lambda generation: plot is not None and generation == 0)
+    if plot is None:
+        record = run_cell(cell, recorder=recorder)
+    else:
+        from suite.report.figures import check_figure_file
+        from suite.report.run_figure import draw_record
+
+        check_figure_file(plot)
+        record = run_cell(cell, recorder=recorder)
+        draw_record(record, recorder.snapshots, plot)
+    if style is TextFormat.JSON:
+        print_json(as_data(record))
+    else:
+        typer.echo(as_text(record))
+    raise typer.Exit(0 if succeeded(record) else 1)
+
+
+def check(
+    planner: Annotated[
+        str, typer.Argument(metavar="PLANNER", help="Name of the planner; see `list planners`.")
+    ],
+    settings: SettingsOption = None,
+    plugin: PluginOption = None,
+    limit_s: Annotated[
+        float, typer.Option(min=1.0, help="Seconds after which a rule that hangs is ended.")
+    ] = 30.0,
+    style: TextStyle = TextFormat.TEXT,
+) -> None:
+    """Check that a planner keeps the plugin contract, rule by rule.
+
+    Exit code 0 if it does, 1 if a rule is broken; what to do about it stands with each rule.
+
+    Example: kbga-bench check kbga --set population_size=20
+    """
+    from suite.conformance.report import as_data, as_text, broken
+    from suite.harness.check import check as apply_rules
+    from suite.harness.single import parse_settings
+
+    use_plugins(plugin)
+    results = apply_rules(planner, parse_settings(settings or []), limit_s)
+    if style is TextFormat.JSON:
+        print_json(as_data(planner, results))
+    else:
+        typer.echo(as_text(planner, results))
+    raise typer.Exit(1 if broken(results) else 0)
+
+
+def new_planner(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Of the planner and its package: my-planner.")
+    ],
+    output: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Where to; default: a folder of that name.")
+    ] = None,
+) -> None:
+    """Write a planner to start from: a package with a module, its metadata and a test.
+
+    It keeps the contract as it is; see `check`.
+
+    Example: kbga-bench new-planner my-planner --output my-planner
+    """
+    from suite.new_planner import write_new_planner
+
+    files = write_new_planner(name, output)
+    for file in files:
+        typer.echo(file)
+    typer.echo(f"Try it: kbga-bench check {name} --plugin {files[0]}")
+
+
+def simulate(
+    scene: SceneArgument,
+    planner: PlannerOption,
+    seed: SeedOption = 0,
+    query: QueryOption = None,
+    settings: SettingsOption = None,
+    plugin: PluginOption = None,
+    cold: Annotated[
+        bool, typer.Option("--cold", help="Plan afresh at every update, whatever the planner can.")
+    ] = False,
+    speed: Annotated[float | None, typer.Option(help="Of the robot, metres per second.")] = None,
+    interval: Annotated[float | None, typer.Option(help="Seconds between updates.")] = None,
+    sensing_range: Annotated[
+        float | None, typer.Option(help="Metres within which unknown obstacles are detected.")
+    ] = None,
+    obstacle_speed_factor: Annotated[
+        float | None, typer.Option(help="All obstacles move so many times as fast.")
+    ] = None,
+    time_limit: Annotated[
+        float | None, typer.Option(help="Simulated seconds after which the run ends.")
+    ] = None,
+    charge: Annotated[
+        Charge, typer.Option(help="Simulated time that planning takes: its own, or none.")
+    ] = Charge.MEASURED,
+    wall_s: Annotated[float | None, typer.Option(help="Budget of each plan: seconds.")] = None,
+    generations: Annotated[
+        int | None, typer.Option(help="Budget of each plan: generations or iterations.")
+    ] = None,
+    checks: Annotated[
+        int | None, typer.Option(help="Budget of each plan: collision checks.")
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw snapshots: .png, .pdf or .svg.")
+    ] = None,
+    animate: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw it moving: .gif or .mp4.")
+    ] = None,
+    style: TextStyle = TextFormat.TEXT,
+) -> None:
+    """Let a robot find its way through a dynamic scene, planning anew as it goes.
+
+    Exit code 0 if it reached the goal and was never hit, 1 otherwise.
+
+    Example: kbga-bench simulate door --planner kbga --seed 3 --speed 5 --animate door.gif
+    """
+    from suite.harness.cell import run_cell
+    from suite.harness.single import cell_for, parse_settings
+    from suite.harness.single_simulation import (
+        as_data,
+        as_text,
+        simulation_of,
+        unhurt,
+        world_for,
+    )
+    from suite.planner import Budget
+
+    use_plugins(plugin)
+    if plot is not None:
+        from suite.report.figures import check_figure_file
+
+        check_figure_file(plot)
+    if animate is not None:
+        from suite.report.dynamic_figures import check_animation_file
+
+        check_animation_file(animate)
+    overrides = {
+        "speed": speed,
+        "interval": interval,
+        "sensing_range": sensing_range,
+        "obstacle_speed_factor": obstacle_speed_factor,
+        "time_limit": time_limit,
+        "charge": charge.value,
+    }
+    cell = cell_for(
+        scene,
+        planner,
+        seed=seed,
+        query=query,
+        settings=parse_settings(settings or []),
+        budget=Budget(wall_s, generations, checks),
+        world=world_for(scene, overrides, cold=cold),
+    )
+    record = run_cell(cell)
+    done = simulation_of(record) if plot is not None or animate is not None else None
+    if done is not None and plot is not None:
+        from suite.report.dynamic_figures import plot_snapshots
+        from suite.report.figures import save
+
+        save(plot_snapshots(done), plot)
+    if done is not None and animate is not None:
+        from suite.report.dynamic_figures import animate as write_animation
+
+        write_animation(done, animate)
+    if style is TextFormat.JSON:
+        print_json(as_data(record))
+    else:
+        typer.echo(as_text(record))
+    raise typer.Exit(0 if unhurt(record) else 1)

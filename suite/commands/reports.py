@@ -1,0 +1,153 @@
+"""Commands about what is in a store: tables, compare, export, results, report.
+
+Floors above the planner interface are imported inside the commands: pandas and matplotlib take
+longer to import than ``list`` takes to answer.
+"""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from suite.commands.options import (
+    StoreArgument,
+    TableFormat,
+)
+
+
+class ExportFormat(StrEnum):
+    """Files that rows can be exported to."""
+
+    PARQUET = "parquet"
+    CSV = "csv"
+    OMPL_LOG = "ompl-log"
+    PLANNER_ARENA = "planner-arena"
+
+
+class Rows(StrEnum):
+    """Rows that a results folder can do without, once its tables and figures are made."""
+
+    EVENTS = "events"
+    TRACES = "traces"
+    PATHS = "paths"
+
+
+def tables(
+    store: StoreArgument,
+    style: Annotated[TableFormat, typer.Option("--format", help="How to print them.")] = (
+        TableFormat.TABLE
+    ),
+    output: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write a file for each table instead.")
+    ] = None,
+) -> None:
+    """Print the tables of a store: a summary, the paper's figures beside ours, and comparisons.
+
+    As text, tables of the rows behind another table are left out; a last line names them.
+
+    Example: kbga-bench tables out/paper.db --format markdown
+    """
+    from suite.report.results import read_tables, write_tables
+    from suite.report.table import Format, render
+
+    found = read_tables(store)
+    if output is not None:
+        for path in write_tables(found, output, Format(style)):
+            typer.echo(path)
+        return
+    hidden = [table.name for table in found if table.detail and style is TableFormat.TABLE]
+    shown = [render(table, Format(style)) for table in found if table.name not in hidden]
+    if hidden:
+        shown.append(f"Not printed, but written with --output: {', '.join(hidden)}.\n")
+    typer.echo("\n".join(shown), nl=False)
+
+
+def compare(
+    old: Annotated[Path, typer.Argument(metavar="OLD", help="Result store of before.")],
+    new: Annotated[Path, typer.Argument(metavar="NEW", help="Result store of after.")],
+    times: Annotated[
+        bool, typer.Option("--times", help="Let times decide too: of one quiet machine.")
+    ] = False,
+    style: Annotated[TableFormat, typer.Option("--format", help="How to print it.")] = (
+        TableFormat.TABLE
+    ),
+) -> None:
+    """Compare two stores of the same matrix: what got better, and what got worse.
+
+    Exit code 0 if nothing got worse, 1 if something did.
+
+    Example: kbga-bench compare before.db after.db
+    """
+    import numpy as np
+
+    from suite.report.table import Format, render
+    from suite.report.versions import BOOTSTRAP_SEED, compare_versions
+    from suite.store import read_runs
+
+    rng = np.random.default_rng(BOOTSTRAP_SEED)
+    found = compare_versions(read_runs(old), read_runs(new), rng, with_times=times)
+    typer.echo(render(found.table, Format(style)), nl=False)
+    typer.echo(f"\n{found.summary()}", err=style is not TableFormat.TABLE)
+    raise typer.Exit(1 if found.worse else 0)
+
+
+def export(
+    store: StoreArgument,
+    target: Annotated[
+        Path, typer.Argument(metavar="DIR|FILE", help="Folder, or file of planner-arena.")
+    ],
+    to: Annotated[ExportFormat, typer.Option(help="Kind of files.")] = ExportFormat.PARQUET,
+) -> None:
+    """Export the rows of a store.
+
+    parquet, csv: runs, events, traces, paths, a file each. ompl-log: a log of OMPL's benchmarks for
+    each query. planner-arena: the database that Planner Arena reads, made of these logs.
+
+    Example: kbga-bench export out/paper.db rows --to csv
+    """
+    if to in (ExportFormat.PARQUET, ExportFormat.CSV):
+        from suite.report.export import export_rows
+
+        files = export_rows(store, target, to.value)
+    else:
+        from suite.report.ompl_log import write_ompl_logs, write_planner_arena
+
+        is_log = to is ExportFormat.OMPL_LOG
+        files = write_ompl_logs(store, target) if is_log else [write_planner_arena(store, target)]
+    for path in files:
+        typer.echo(path)
+
+
+def results(
+    store: StoreArgument,
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where to; made if missing.")],
+    leave_out: Annotated[
+        list[Rows] | None,
+        typer.Option(help="Rows that are not written, where they are too many; repeatable."),
+    ] = None,
+) -> None:
+    """Make a results folder: tables, rows, figures of scenes and studies, and the manifest.
+
+    Example: kbga-bench results out/paper.db results/paper-static --leave-out traces
+    """
+    from suite.report.results import write_results
+
+    for path in write_results(store, directory, leave_out={kind.value for kind in leave_out or []}):
+        typer.echo(path)
+
+
+def report(
+    store: StoreArgument,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", help="Page to write: .html.")
+    ] = Path("report.html"),
+) -> None:
+    """Write a report: one page with tables, charts and pictures that opens without a network.
+
+    Example: kbga-bench report out/paper.db -o report.html
+    """
+    from suite.report.html.page import write_report
+
+    write_report(store, output)
+    typer.echo(output)

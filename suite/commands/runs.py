@@ -1,0 +1,212 @@
+"""Commands about matrices and their stores: run, merge, status, rerun.
+
+Floors above the planner interface are imported inside the commands: pandas and matplotlib take
+longer to import than ``list`` takes to answer.
+"""
+
+import sys
+from contextlib import nullcontext
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from suite.commands.options import (
+    PluginOption,
+    StoreArgument,
+    TextFormat,
+    TextStyle,
+    use_plugins,
+)
+from suite.commands.output import print_json
+
+
+class Where(StrEnum):
+    """Where runs are run; see :mod:`suite.harness.executors`."""
+
+    LOCAL = "local"
+    DASK = "dask"
+
+
+def run(
+    matrix: Annotated[
+        str, typer.Argument(metavar="MATRIX", help="Name in the catalogue, or path of a file.")
+    ],
+    store: Annotated[Path, typer.Option(metavar="FILE", help="Result store; made if missing.")],
+    jobs: Annotated[
+        int | None, typer.Option(min=1, help="Runs at a time; default: one per physical core.")
+    ] = None,
+    executor: Annotated[
+        Where, typer.Option(help="Where: on this machine, or on the workers of a dask cluster.")
+    ] = Where.LOCAL,
+    address: Annotated[
+        str | None, typer.Option(metavar="URL", help="Of the dask scheduler: tcp://host:port.")
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Only the first two seeds.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Run what is there again too, and replace its rows.")
+    ] = False,
+    only_failed: Annotated[
+        bool, typer.Option("--only-failed", help="Run again only the rows that failed.")
+    ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say what would run, and about how long; run nothing.")
+    ] = False,
+    merge: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="STORE", help="First take in the rows of another store; repeatable."),
+    ] = None,
+    snapshots: Annotated[
+        int,
+        typer.Option(min=0, help="Keep the populations of so many runs, for the report's player."),
+    ] = 40,
+    plugin: PluginOption = None,
+) -> None:
+    """Run what a store still lacks of a matrix, each run in a process of its own.
+
+    It can be stopped at any time and started again: only the runs in flight are lost. At the end
+    some runs of planners with a population are done again, outside any clock, to keep it.
+
+    Exit code 0 if all is done, 1 if rows of other stores are in conflict, 130 after Ctrl-C.
+
+    Example: kbga-bench run paper-static --store out/paper.db --jobs 2
+
+    Example: kbga-bench run paper-static --store out/paper.db --executor dask --address tcp://n1:8786
+    """
+    from suite.harness.display import Display
+    from suite.harness.matrix import load_matrix
+    from suite.harness.run import Which, run_matrix
+    from suite.harness.snapshots import keep_snapshots
+    from suite.store import open_store
+
+    use_plugins(plugin)
+    if (executor is Where.DASK) != (address is not None):
+        raise typer.BadParameter(
+            "Give --executor dask and --address together.", param_hint="--address"
+        )
+    if force and only_failed:
+        raise typer.BadParameter("Give one of --force and --only-failed.", param_hint="--force")
+    which = Which.ALL if force else Which.FAILED if only_failed else Which.MISSING
+    wanted = load_matrix(matrix)
+    if dry_run:
+        from suite.harness.forecast import forecast_matrix
+
+        typer.echo(forecast_matrix(wanted, store, jobs=jobs, quick=quick, which=which).as_text())
+        return
+    with _executor(address) as cluster, open_store(store) as opened:
+        clean = _merge_into(opened, merge or [])
+        try:
+            with Display(wanted.name) as display:
+                end = run_matrix(
+                    wanted,
+                    opened,
+                    jobs=jobs,
+                    quick=quick,
+                    which=which,
+                    executor=cluster,
+                    on_progress=display,
+                )
+            kept = keep_snapshots(wanted, opened, most=snapshots)
+        except KeyboardInterrupt as interrupt:
+            typer.echo(
+                "Stopped. All finished runs are kept; to go on, give the same command again.",
+                err=True,
+            )
+            for note in getattr(interrupt, "__notes__", ()):
+                typer.echo(note, err=True)
+            raise typer.Exit(130) from None
+    typer.echo(" ".join(filter(None, (end.summary(), kept.summary()))))
+    raise typer.Exit(0 if clean else 1)
+
+
+def _executor(address: str | None) -> Any:
+    """A cluster's executor; None, if no address is given, for threads of this process."""
+    if address is None:
+        return nullcontext()
+    from suite.harness.executors import connect
+
+    return connect(address)
+
+
+def merge(
+    store: Annotated[Path, typer.Argument(metavar="STORE", help="Result store; made if missing.")],
+    sources: Annotated[list[Path], typer.Argument(metavar="FROM...", help="Stores to take in.")],
+) -> None:
+    """Take the rows of other stores into one, as when several machines ran parts of a matrix.
+
+    A row that is there with another outcome stays, and the other one is kept beside it. Exit code
+    0 if there was no such conflict, 1 otherwise.
+
+    Example: kbga-bench merge all.db machine-1.db machine-2.db
+    """
+    from suite.store import open_store
+
+    with open_store(store) as opened:
+        clean = _merge_into(opened, sources)
+    raise typer.Exit(0 if clean else 1)
+
+
+def _merge_into(store: Any, sources: list[Path]) -> bool:
+    """Merge, say what came of it, and return whether there was no conflict."""
+    from suite.merge import merge
+
+    done = merge(store, sources)
+    for one in done:
+        typer.echo(one.summary())
+        for key in one.conflicts:
+            typer.echo(f"  row {key} has another outcome there; both are kept.")
+    return not any(one.conflicts for one in done)
+
+
+def status(store: StoreArgument, style: TextStyle = TextFormat.TEXT) -> None:
+    """Say how far a store is, also while another process is writing to it.
+
+    Example: kbga-bench status out/paper.db --format json
+    """
+    from suite.harness.status import as_text
+    from suite.harness.status import status as status_of
+
+    found = status_of(store)
+    if style is TextFormat.JSON:
+        print_json(found)
+    else:
+        typer.echo(as_text(found))
+
+
+def rerun(
+    store: StoreArgument,
+    row: Annotated[str, typer.Argument(metavar="ROW", help="Key of the row, or its beginning.")],
+    debug: Annotated[
+        bool, typer.Option("--pdb", help="Enter the debugger where an exception is raised.")
+    ] = False,
+    style: TextStyle = TextFormat.TEXT,
+) -> None:
+    """Repeat one row from its own record, in this process, and compare the paths.
+
+    The store is not changed. Exit code 0 if the path is the same bit for bit, or may differ because
+    the row's budget was of time; 1 otherwise.
+
+    Example: kbga-bench rerun out/paper.db 3f2a09
+    """
+    from suite.harness.cell import attempt_cell, run_cell
+    from suite.harness.rerun import cell_of, compare
+    from suite.harness.single import as_data, as_text
+
+    cell = cell_of(store, row)
+    if debug:
+        import pdb
+
+        try:
+            record = attempt_cell(cell)
+        except Exception:
+            pdb.post_mortem(sys.exc_info()[2])
+            raise typer.Exit(1) from None
+    else:
+        record = run_cell(cell)
+    found = compare(store, record)
+    if style is TextFormat.JSON:
+        print_json({**as_data(record), "key": cell.key, **found.as_dict})
+    else:
+        typer.echo(f"{as_text(record)}\n  {found.words}")
+    raise typer.Exit(0 if found.same or not found.must_be_same else 1)

@@ -1,0 +1,114 @@
+"""Commands about scenes: list, generate, exact.
+
+Floors above the planner interface are imported inside the commands: pandas and matplotlib take
+longer to import than ``list`` takes to answer.
+"""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from suite.commands.options import (
+    PluginOption,
+    QueryOption,
+    SceneArgument,
+    TextFormat,
+    TextStyle,
+    use_plugins,
+)
+from suite.commands.output import print_json, print_rows
+
+
+class What(StrEnum):
+    """What can be listed."""
+
+    SCENES = "scenes"
+    PLANNERS = "planners"
+    MATRICES = "matrices"
+
+
+class ListFormat(StrEnum):
+    """How a list is printed."""
+
+    TABLE = "table"
+    JSON = "json"
+
+
+class Generator(StrEnum):
+    """What scenes can be drawn from a seed."""
+
+    SCATTERED = "scattered"
+    MOVING = "moving"
+
+
+def list_command(
+    what: Annotated[What, typer.Argument(help="What to list.")],
+    plugin: PluginOption = None,
+    style: Annotated[ListFormat, typer.Option("--format", help="For people or programs.")] = (
+        ListFormat.TABLE
+    ),
+) -> None:
+    """List what there is: scenes, planners or matrices.
+
+    Example: kbga-bench list planners --format json
+    """
+    from suite import listing
+
+    use_plugins(plugin)
+    rows = {
+        What.SCENES: listing.scenes_listing,
+        What.PLANNERS: listing.planners_listing,
+        What.MATRICES: listing.matrices_listing,
+    }[what]()
+    if style is ListFormat.JSON:
+        print_json(rows)
+    else:
+        print_rows(rows)
+
+
+def generate(
+    generator: Annotated[Generator, typer.Argument(help="Kind of scene.")],
+    output: Annotated[Path, typer.Option(metavar="FILE", help="Scene file: .geojson or .json.")],
+    obstacles: Annotated[
+        int | None,
+        typer.Option(help="Number of scattered obstacles, counted as convex parts."),
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Another seed gives another scene.")] = 0,
+) -> None:
+    """Draw a scene from a seed and write it to a file.
+
+    Without a file, `scattered_300-7` names the same scene wherever a scene is asked for, and
+    `moving-7` the one of moving obstacles.
+
+    Example: kbga-bench generate scattered --obstacles 300 --seed 7 --output s300.geojson
+    """
+    from suite.scene_file import check_scene_file, write_scene
+    from suite.scenes.moving import moving
+    from suite.scenes.scattered import scattered
+
+    if (obstacles is None) != (generator is Generator.MOVING):
+        rule = "Leave it out" if generator is Generator.MOVING else "Give it"
+        raise typer.BadParameter(f"{rule} for {generator} scenes.", param_hint="--obstacles")
+    check_scene_file(output)
+    write_scene(moving(seed) if obstacles is None else scattered(obstacles, seed), output)
+    typer.echo(output)
+
+
+def exact(
+    scene: SceneArgument,
+    query: QueryOption = None,
+    style: TextStyle = TextFormat.TEXT,
+) -> None:
+    """Compute the exact shortest path of a scene, or say that there is none.
+
+    Example: kbga-bench exact maze --format json
+    """
+    from suite.harness.single import exact_as_data, exact_as_text
+
+    found = exact_as_data(scene, query)
+    if style is TextFormat.JSON:
+        print_json(found)
+    else:
+        typer.echo(exact_as_text(found))

@@ -1,0 +1,100 @@
+"""Rules about runs that are repeated: the seed decides everything, and nothing else does."""
+
+from suite.conformance.finding import Finding, NotApplicable
+from suite.conformance.subject import SEED, Subject, Trial
+
+Outcome = Finding | NotApplicable | None
+
+VARIED = ("one wall", "narrow gap", "500 obstacles")
+SEEDS = (1, 2, 3, 4)
+TIMED = NotApplicable("it keeps no budget but wall time, and timed runs need not repeat.")
+UNREPEATED = NotApplicable("two runs with the same seed differ already.")
+UNPLANNED = NotApplicable("not all runs end with a plan.")
+
+
+def same_seed_same_path(subject: Subject) -> Outcome:
+    """The same seed and counted budget give the same run, to the last bit."""
+    hindrance = _hindrance(subject)
+    if hindrance is not None:
+        return hindrance
+    for scene in subject.on(*VARIED):
+        one, other = subject.trial(scene), subject.trial(scene)
+        if one.outcome != other.outcome:
+            return Finding(
+                f"{one.label}: two runs differ in {difference(one, other)}",
+                "the same path, counts and reports",
+                "Draw from the `rng` that plan is given and from nothing else; do not iterate "
+                "over sets, and let no clock decide where the budget is counted.",
+            )
+    return None
+
+
+def another_seed_another_stream(subject: Subject) -> Outcome:
+    """Another seed gives another run, unless the planner is called deterministic: then the same."""
+    found = same_seed_same_path(subject)
+    if found is not None:
+        return found if isinstance(found, NotApplicable) else UNREPEATED
+    runs = [[subject.trial(s, seed=seed) for seed in SEEDS] for s in subject.on(*VARIED)]
+    differing = [r for r in runs if len({trial.outcome for trial in r}) > 1]
+    drew = any(trial.drew for r in runs for trial in r)
+    if subject.planner_class.abilities.deterministic:
+        return _not_deterministic(differing[0]) if differing else None
+    if not differing and drew and not any(trial.ends for r in runs for trial in r):
+        return NotApplicable("no run found a path by which seeds could be told apart.")
+    return None if differing else _no_stream(drew)
+
+
+def _not_deterministic(runs: list[Trial]) -> Finding:
+    return Finding(
+        f"{runs[0].label}: other seeds give other runs",
+        "the same run for every seed, as abilities say that it is deterministic",
+        "Leave `deterministic` out of abilities.",
+    )
+
+
+def _no_stream(drew: bool) -> Finding:
+    what = "" if drew else ", and nothing is drawn from rng"
+    return Finding(
+        f"the seeds {', '.join(map(str, SEEDS))} give the same run on each of {len(VARIED)} "
+        f"scenes{what}",
+        "runs that differ, or Abilities(deterministic=True)",
+        "Draw from the `rng` that plan is given, not from a generator with a fixed seed. A planner "
+        "without randomness says so: Abilities(deterministic=True).",
+    )
+
+
+def keeps_no_state(subject: Subject) -> Outcome:
+    """A planner that has run before, elsewhere, gives the same run as a new one."""
+    found = same_seed_same_path(subject)
+    if found is not None:
+        return found if isinstance(found, NotApplicable) else UNREPEATED
+    used = subject.build()
+    for scene in subject.on("enclosed goal", *VARIED):
+        subject.trial(scene, seed=SEED + 1, planner=used)
+    for scene in subject.on(*VARIED):
+        fresh, again = subject.trial(scene), subject.trial(scene, planner=used)
+        if fresh.outcome != again.outcome:
+            return Finding(
+                f"{again.label}: a planner that had run before differs from a new one in "
+                f"{difference(fresh, again)}",
+                "the same path, counts and reports",
+                "Keep what belongs to a run in local variables of plan, not in self or in the "
+                "class.",
+            )
+    return None
+
+
+def _hindrance(subject: Subject) -> NotApplicable | None:
+    """Why repeated runs say nothing of this planner."""
+    if subject.is_timed and not subject.planner_class.abilities.deterministic:
+        return TIMED
+    return UNPLANNED if any(trial.plan is None for trial in subject.trials) else None
+
+
+def difference(one: Trial, other: Trial) -> str:
+    """What two runs differ in, in words."""
+    if one.plan is None or other.plan is None:
+        return "whether they end well"
+    names = ("status", "path", "generations", "checks", "reports")
+    pairs = zip(names, one.outcome, other.outcome, strict=True)
+    return ", ".join(name for name, mine, yours in pairs if mine != yours)

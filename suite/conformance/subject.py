@@ -1,0 +1,265 @@
+"""A planner under examination, and its runs: each in this process, watched, and kept for all rules.
+
+A run here goes as in the harness: a planner is built and warmed up, may refuse, and plans; then the
+path is judged. The scene that it is given is its own: the judge has another.
+"""
+
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+
+from suite.conformance.scenes import SmallScene, small_scenes
+from suite.conformance.surroundings import Surroundings, fingerprint, seed_globals
+from suite.exact import shortest_path
+from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder
+from suite.referee import Referee, Verdict
+from suite.scene import Scene
+
+CLAIMABLE = (PlanStatus.SOLVED, PlanStatus.INFEASIBLE, PlanStatus.EXHAUSTED)
+SEED = 1
+
+GENERATIONS = 10
+CHECKS = 4000
+WALL_S = 0.2
+"""Ordinary budgets: enough for simple scenes, and little enough that no author has to wait."""
+
+TRACEBACK_LINES = 8
+
+_lent: dict[str, Scene] = {}
+"""The scenes that planners are given, by name; one that was written to is built anew."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Run:
+    """What a planner did.
+
+    recorder : what it reported.
+    refusal : what ``refuse`` returned.
+    returned : what ``plan`` returned; None if it was not called.
+    error : the end of the traceback, if anything raised.
+    wall_s : what ``plan`` took, seconds.
+    """
+
+    recorder: Recorder
+    refusal: Any = None
+    returned: Any = None
+    error: str | None = None
+    wall_s: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """One run of a planner, and what was seen around it.
+
+    scene : which of the kit.
+    budget, seed : what it was given.
+    run : what it did.
+    drew : whether anything was drawn from the stream.
+    scene_changed : whether the scene or the query was written to.
+    before, after : the process around it.
+    """
+
+    scene: SmallScene
+    budget: Budget
+    seed: int
+    run: Run
+    drew: bool
+    scene_changed: bool
+    before: Surroundings
+    after: Surroundings
+
+    @property
+    def label(self) -> str:
+        """The run in words, for findings."""
+        return run_in_words(self.scene, self.seed, self.budget)
+
+    @property
+    def refused(self) -> bool:
+        """Whether it was refused with a reason."""
+        return isinstance(self.run.refusal, str) and bool(self.run.refusal.strip())
+
+    @property
+    def plan(self) -> Plan | None:
+        """What was returned, if it has the form of a plan."""
+        return self.run.returned if form_of(self.run.returned) is None else None
+
+    @property
+    def ends(self) -> bool:
+        """Whether the path starts and ends where it should."""
+        if self.plan is None or self.plan.path is None:
+            return False
+        query = _pristine(self.scene).query()
+        ends = np.asarray(self.plan.path, dtype=np.float64)[[0, -1]]
+        return bool(np.array_equal(ends, np.array([query.start, query.goal])))
+
+    @cached_property
+    def verdict(self) -> Verdict | None:
+        """The referee's, on a path that was called solved and has the right ends."""
+        plan = self.plan
+        if plan is None or plan.status != PlanStatus.SOLVED or not self.ends:
+            return None
+        return _referee(self.scene).judge(_pristine(self.scene).query(), plan.path)
+
+    @property
+    def length(self) -> float | None:
+        """Length of the path in metres, if the referee accepts it."""
+        return None if self.verdict is None else self.verdict.length
+
+    @property
+    def outcome(self) -> tuple[Any, ...]:
+        """All of the run that must be the same when it is repeated: everything but times."""
+        plan = self.plan
+        if plan is None:
+            return (str(self.run.refusal), self.run.error)
+        told = tuple((i.cost, i.generation, i.checks) for i in self.run.recorder.improvements)
+        path = None if plan.path is None else np.asarray(plan.path, dtype=np.float64).tobytes()
+        return (str(plan.status), path, plan.generations, plan.checks, told)
+
+
+class Subject:
+    """A planner's class with settings, and the runs that the rules share.
+
+    Parameters
+    ----------
+    planner_class : type[Planner]
+    settings : planner_class.Settings, optional
+        Default: the planner's own.
+    on_run : callable, optional
+        Told of each run, in words, before it begins.
+    """
+
+    def __init__(
+        self,
+        planner_class: type[Planner],
+        settings: Any = None,
+        on_run: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        self.planner_class = planner_class
+        self.settings = settings
+        self._on_run = on_run
+
+    def build(self) -> Planner:
+        """A new planner."""
+        return self.planner_class(self.settings)
+
+    @property
+    def ordinary(self) -> Budget:
+        """The budget of most runs: counted if the planner counts anything, so that it repeats."""
+        budgets = self.planner_class.abilities.budgets
+        if "generations" in budgets:
+            return Budget(generations=GENERATIONS)
+        if "checks" in budgets:
+            return Budget(checks=CHECKS)
+        return Budget(wall_s=WALL_S) if "wall_s" in budgets else Budget()
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether its runs end by the clock, so that no two of them need to be alike."""
+        return self.ordinary.wall_s is not None
+
+    @cached_property
+    def trials(self) -> tuple[Trial, ...]:
+        """An ordinary run on each small scene."""
+        return tuple(self.trial(scene) for scene in small_scenes())
+
+    def on(self, *names: str) -> Sequence[SmallScene]:
+        """Scenes of the kit by name."""
+        return [scene for scene in small_scenes() if scene.name in names]
+
+    def trial(
+        self,
+        scene: SmallScene,
+        budget: Budget | None = None,
+        seed: int = SEED,
+        planner: Planner | None = None,
+    ) -> Trial:
+        """One run, by a new planner or by one that is given; kept by nobody."""
+        budget, rng = budget or self.ordinary, np.random.default_rng([seed, 2003])
+        self._on_run(run_in_words(scene, seed, budget))
+        given = _lent.get(scene.name) or _lent.setdefault(scene.name, scene.build())
+        outer, stream = Surroundings.now(), str(rng.bit_generator.state)
+        seed_globals(seed)
+        before, drawn = Surroundings.now(), fingerprint(given, given.query())
+        run = _run(self.build if planner is None else lambda: planner, given, budget, rng)
+        after, changed = Surroundings.now(), fingerprint(given, given.query()) != drawn
+        outer.restore()
+        if changed:
+            del _lent[scene.name]
+        drew = str(rng.bit_generator.state) != stream
+        return Trial(scene, budget, seed, run, drew, changed, before, after)
+
+
+def _run(
+    build: Callable[[], Planner], scene: Scene, budget: Budget, rng: np.random.Generator
+) -> Run:
+    """Do what the harness does with a planner, and take whatever comes of it."""
+    query, recorder = scene.query(), Recorder()
+    try:
+        planner = build()
+        planner.warm_up()
+        refusal = planner.refuse(scene, query, budget)
+        if refusal is not None:
+            return Run(recorder, refusal=refusal)
+        recorder.start_clock()
+        returned = planner.plan(scene, query, budget, rng, recorder)
+        return Run(recorder, returned=returned, wall_s=recorder.wall_s())
+    except (Exception, SystemExit):  # other people's code: it may raise anything
+        lines = traceback.format_exc().strip().splitlines()[-TRACEBACK_LINES:]
+        return Run(recorder, error="\n".join(lines))
+
+
+def form_of(returned: Any) -> str | None:
+    """What is wrong with the form of what ``plan`` returned; None if nothing is."""
+    if not isinstance(returned, Plan):
+        return f"plan returned {type(returned).__name__}"
+    if returned.status not in CLAIMABLE:
+        return f"the status of the plan is {returned.status!r}"
+    for name in ("claimed_cost", "generations", "generation_of_best", "checks"):
+        value = getattr(returned, name)
+        if value is not None and not isinstance(value, int | float | np.number):
+            return f"{name} of the plan is a {type(value).__name__}"
+    if not all(isinstance(value, int | float | np.number) for value in returned.details.values()):
+        return f"details of the plan are {returned.details!r}, which are not all numbers"
+    if returned.path is None:
+        return "the plan is 'solved' and has no path" if returned.status == "solved" else None
+    try:
+        path = np.asarray(returned.path, dtype=np.float64)
+    except (TypeError, ValueError):
+        return f"the path is a {type(returned.path).__name__} that is no array of numbers"
+    if path.ndim != 2 or path.shape[1] != 2 or len(path) < 1 or not np.isfinite(path).all():
+        return f"the path has the shape {path.shape}, or numbers that are not finite"
+    return None
+
+
+def times(budget: Budget, factor: int) -> Budget:
+    """So many times a budget."""
+    limits = {name: getattr(budget, name) for name in ("wall_s", "generations", "checks")}
+    return Budget(**{name: factor * limit for name, limit in limits.items() if limit is not None})
+
+
+def optimum(scene: SmallScene) -> float:
+    """Length of the shortest path, metres; infinite without a path."""
+    given = _pristine(scene)
+    return shortest_path(given, given.query()).length
+
+
+def run_in_words(scene: SmallScene, seed: int, budget: Budget) -> str:
+    """What was run, for findings; the budget as an author would write it."""
+    parts = {name: getattr(budget, name) for name in ("wall_s", "generations", "checks")}
+    inner = ", ".join(f"{name}={value}" for name, value in parts.items() if value is not None)
+    return f"on '{scene.name}' with seed {seed} and Budget({inner})"
+
+
+@lru_cache(maxsize=16)
+def _pristine(scene: SmallScene) -> Scene:
+    """A scene that no planner has in its hands."""
+    return scene.build()
+
+
+@lru_cache(maxsize=16)
+def _referee(scene: SmallScene) -> Referee:
+    return Referee(_pristine(scene))

@@ -1,0 +1,88 @@
+"""Scenes and paths as SVG outlines. A thousand units are the longer side; y points down there."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely.geometry import Polygon
+
+from suite.scene import Query, Scene
+
+LONGER_SIDE = 1000.0
+MARGIN = 25
+"""Around the workspace, for the marks of start and goal."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawing:
+    """A scene with one of its queries, to be put below paths.
+
+    view_box : of the picture.
+    room, obstacles : outlines, with holes by the even-odd rule.
+    start, goal : (x, y) in the units of the picture.
+    left, top, scale : what turns metres into these units.
+    """
+
+    view_box: str
+    room: str
+    obstacles: str
+    start: tuple[int, int]
+    goal: tuple[int, int]
+    left: float
+    top: float
+    scale: float
+
+    def outline(self, path: NDArray[np.float64]) -> str:
+        """A path as the attribute ``d`` of an SVG path.
+
+        Parameters
+        ----------
+        path : (n, 2) float64, metres
+        """
+        return _outline(_units(path, self.left, self.top, self.scale))
+
+    def outlines(self, paths: Iterable[NDArray[np.float64]]) -> str:
+        """Several paths as one."""
+        return "".join(map(self.outline, paths))
+
+
+def draw(scene: Scene, query: Query) -> Drawing:
+    """Draw a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    query : Query
+    """
+    xmin, ymin, xmax, ymax = scene.bounds
+    scale = LONGER_SIDE / max(xmax - xmin, ymax - ymin)
+    width, height = (round(scale * side) for side in (xmax - xmin, ymax - ymin))
+
+    def closed(polygon: Polygon) -> str:
+        rings = (polygon.exterior, *polygon.interiors)
+        return "".join(
+            _outline(_units(np.asarray(ring.coords)[:-1, :2], xmin, ymax, scale)) + "Z"
+            for ring in rings
+        )
+
+    start, goal = _units(np.array([query.start, query.goal]), xmin, ymax, scale).tolist()
+    return Drawing(
+        f"{-MARGIN} {-MARGIN} {width + 2 * MARGIN} {height + 2 * MARGIN}",
+        closed(scene.workspace),
+        "".join(closed(obstacle.polygon) for obstacle in scene.obstacles),
+        (start[0], start[1]),
+        (goal[0], goal[1]),
+        xmin,
+        ymax,
+        scale,
+    )
+
+
+def _units(xy: NDArray[np.float64], left: float, top: float, scale: float) -> NDArray[np.int64]:
+    units = np.column_stack([xy[:, 0] - left, top - xy[:, 1]]) * scale
+    return units.round().astype(np.int64)
+
+
+def _outline(units: NDArray[np.int64]) -> str:
+    return "M" + "L".join(f"{x} {y}" for x, y in units.tolist())

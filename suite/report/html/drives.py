@@ -1,0 +1,63 @@
+"""Sheets of snapshots of simulated runs: one for each scene and world."""
+
+import base64
+from dataclasses import dataclass
+
+from suite.dynamic.plain import from_data
+from suite.errors import KbgaBenchError
+from suite.report.dynamic_figures import plot_snapshots
+from suite.report.figures import as_png
+from suite.report.html.evidence import Evidence
+from suite.scene import scene_fingerprint
+from suite.scenes.catalogue import load_scene
+from suite.store import read_simulation
+
+SHEETS_AT_MOST = 24
+
+
+@dataclass(frozen=True, slots=True)
+class DriveSheet:
+    """A simulated run as a picture.
+
+    image : data URI of a PNG; empty if it can't be drawn, and then ``reason`` says why.
+    """
+
+    title: str
+    alt: str
+    image: str
+    reason: str = ""
+
+
+def drive_sheets(evidence: Evidence) -> tuple[list[DriveSheet], int]:
+    """A sheet of the first simulated run in each world, and how many worlds have none.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    """
+    first = evidence.driven.drop_duplicates(["scene_source", "query", "world"])
+    shown = first[:SHEETS_AT_MOST].to_dict("records")
+    sheets = []
+    for row in shown:
+        title = f"{row['scene']}, {row['world']}: {row['variant']}, seed {row['seed']}"
+        alt = (
+            f"Snapshots of a robot that drives through {row['scene']} ({row['world']}), guided by "
+            f"{row['variant']}: the run ended as {row['status']}."
+        )
+        try:
+            scene = load_scene(str(row["scene_source"]))
+            if scene_fingerprint(scene, scene.query(row["query"])) != row["scene_hash"]:
+                reason = "The scene has changed since this run, so that it is not drawn."
+                sheets.append(DriveSheet(title, alt, "", reason))
+                continue
+            data = read_simulation(evidence.store, row["key"])
+        except KbgaBenchError as error:
+            sheets.append(DriveSheet(title, alt, "", f"It can't be drawn: {error}"))
+            continue
+        drawn = as_png(plot_snapshots(from_data(scene, data)))
+        sheets.append(DriveSheet(title, alt, _uri(drawn)))
+    return sheets, len(first) - len(shown)
+
+
+def _uri(png: bytes) -> str:
+    return f"data:image/png;base64,{base64.b64encode(png).decode()}"

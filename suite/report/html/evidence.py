@@ -1,0 +1,101 @@
+"""All that the page is made of, read from the store once."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from suite.planner import Snapshot
+from suite.report.anytime import Steps, steps_of
+from suite.report.newest import newest
+from suite.report.panels import numbered
+from suite.report.simulated import is_simulated
+from suite.report.table import Table
+from suite.report.tables import all_tables
+from suite.store import (
+    read_conflicts,
+    read_events,
+    read_first_measures,
+    read_paths,
+    read_replans,
+    read_runs,
+    read_sessions,
+    read_simulations,
+    read_snapshots,
+    read_wanted,
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Evidence:
+    """The rows of a store, and what is derived of them for several sections.
+
+    store : its file.
+    runs : all rows.
+    current : those of the newest version of each scene and planner.
+    steps : the current runs that were not simulated, as step functions.
+    planners : number of each planner, which chooses its colour and line everywhere.
+    tables : all tables.
+    paths : by key, (n, 2) float64, metres.
+    snapshots : by key.
+    wanted : what the matrices want.
+    conflicts : number of rows of other stores that say something else.
+    sessions : provenance.
+    """
+
+    store: Path
+    runs: pd.DataFrame
+    current: pd.DataFrame
+    steps: Steps
+    planners: dict[str, int]
+    tables: list[Table]
+    paths: dict[str, NDArray[np.float64]]
+    snapshots: dict[str, list[Snapshot]]
+    wanted: pd.DataFrame
+    conflicts: int
+    sessions: list[dict[str, Any]]
+
+    @property
+    def driven(self) -> pd.DataFrame:
+        """The current runs that were simulated."""
+        return self.current[is_simulated(self.current)]
+
+
+def read_evidence(store: Path) -> Evidence:
+    """Read a store.
+
+    Raises
+    ------
+    StoreError
+        If it can't be read.
+    """
+    runs, events = read_runs(store), read_events(store)
+    current = newest(runs)
+    return Evidence(
+        store=store,
+        runs=runs,
+        current=current,
+        steps=steps_of(current[~is_simulated(current)], events),
+        planners=numbered(current["variant"]),
+        tables=_tables(store, runs, events),
+        paths=read_paths(store),
+        snapshots=read_snapshots(store),
+        wanted=read_wanted(store),
+        conflicts=len(read_conflicts(store)),
+        sessions=read_sessions(store),
+    )
+
+
+def _tables(store: Path, runs: pd.DataFrame, events: pd.DataFrame) -> list[Table]:
+    if runs.empty:
+        return []
+    return all_tables(
+        runs,
+        read_first_measures(store),
+        events,
+        simulations=read_simulations(store),
+        replans=read_replans(store),
+    )

@@ -1,0 +1,82 @@
+"""The runs that did not end well, with their reasons."""
+
+from typing import Any
+
+import pandas as pd
+
+from suite.planner import PlanStatus
+from suite.report.compared import places
+from suite.report.summary import SUCCESSES
+from suite.report.table import Table
+
+REASONS_AT_MOST = 30
+"""Told in full; of more there is the last line."""
+
+NOTE = (
+    "A row for each planner, status and last line of the reason. Example: the key of one such row; "
+    "`kbga-bench rerun STORE KEY` repeats it. exhausted: the budget or the planner's own stop "
+    "criterion ended the run without a path, which is no fault of the program."
+)
+
+WITHOUT_REASON = "no path within the budget or the planner's own stop criterion"
+
+
+def failures_table(runs: pd.DataFrame) -> Table:
+    """The runs that were neither solved nor proved infeasible, by planner, status and reason.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        As :func:`suite.store.read_runs` gives it.
+    """
+    rows = [
+        {
+            "planner": planner,
+            "status": status,
+            "runs": len(group),
+            "scenes": _some(group["place"]),
+            "reason": reason,
+            "example": group["key"].iloc[0],
+        }
+        for (planner, status, reason), group in _groups(runs)
+    ]
+    frame = pd.DataFrame(rows, columns=["planner", "status", "runs", "scenes", "reason", "example"])
+    frame = frame.sort_values("runs", ascending=False, kind="stable")
+    return Table("failures", "Runs that did not end well, by reason", frame, NOTE)
+
+
+def full_reasons(runs: pd.DataFrame) -> list[tuple[str, str]]:
+    """Reasons of more than one line, and what the processes wrote: (label, text) of one run each.
+
+    Parameters
+    ----------
+    runs : DataFrame
+    """
+    found = []
+    for (planner, status, reason), group in _groups(runs):
+        first = group.iloc[0]
+        texts = [str(first["reason"] or ""), str(first["stderr"] or "")]
+        text = "\n\n".join(part for part in texts if part.strip())
+        if text.strip() != reason and status != PlanStatus.EXHAUSTED:
+            label = f"{planner} on {first['place']}, seed {first['seed']}: {status}"
+            found.append((label, text))
+    return found[:REASONS_AT_MOST]
+
+
+def _groups(runs: pd.DataFrame) -> Any:
+    failed = runs.assign(place=places(runs))[~runs["status"].isin(SUCCESSES)]
+    last = failed["reason"].fillna("").astype(str).str.strip().str.rsplit("\n", n=1).str[-1]
+    missing = (
+        failed["status"]
+        .where(failed["status"] != PlanStatus.EXHAUSTED, WITHOUT_REASON)
+        .where(lambda text: text == WITHOUT_REASON, "no reason was given")
+    )
+    failed = failed.assign(last=last.where(last != "", missing))
+    return failed.groupby(["variant", "status", "last"], sort=False)
+
+
+def _some(names: "pd.Series[str]") -> str:
+    """A few names, and how many more."""
+    different = list(dict.fromkeys(map(str, names)))
+    more = f" and {len(different) - 4} more" if len(different) > 4 else ""
+    return ", ".join(different[:4]) + more

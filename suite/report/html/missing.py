@@ -1,0 +1,121 @@
+"""What the store does not hold, counted: a reader must know what a table does not speak of."""
+
+from collections.abc import Iterable
+
+import numpy as np
+import pandas as pd
+
+from suite.report.html.evidence import Evidence
+from suite.report.html.scenes import ScenePicture
+from suite.report.table import Table
+
+NAMES_AT_MOST = 8
+
+
+def missing_table(evidence: Evidence, pictures: list[ScenePicture]) -> Table:
+    """What is missing: a row for each kind, also where nothing is.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    pictures : list of ScenePicture
+    """
+    rows = [
+        _not_done(evidence),
+        _outdated(evidence),
+        _without_events(evidence),
+        _without_count(evidence, "generation"),
+        _without_count(evidence, "checks"),
+        _without_optimum(evidence),
+        _not_drawn(pictures),
+        _contended(evidence),
+        _conflicts(evidence),
+    ]
+    # Nothing follows from what is not missing.
+    rows = [(what, count, where, follows if count else "") for what, count, where, follows in rows]
+    frame = pd.DataFrame(rows, columns=["what is missing", "count", "where", "what follows"])
+    return Table("missing", "What is missing", frame)
+
+
+_Row = tuple[str, int, str, str]
+
+
+def _not_done(evidence: Evidence) -> _Row:
+    wanted = evidence.wanted.drop_duplicates("key")
+    left = wanted[wanted["status"].isna()]
+    follows = "the same `kbga-bench run` runs them"
+    return (
+        "runs that a matrix wants and that were not done",
+        len(left),
+        _by(left["variant"]),
+        follows,
+    )
+
+
+def _outdated(evidence: Evidence) -> _Row:
+    current = set(evidence.current["key"])
+    old = evidence.runs[~evidence.runs["key"].isin(current)]
+    follows = "scene, planner, settings or budget changed since; no table speaks of them"
+    return "rows that are outdated", len(old), _by(old["variant"]), follows
+
+
+def _without_events(evidence: Evidence) -> _Row:
+    """Runs that are solved and reported nothing on their way have one step, at their end."""
+    steps = evidence.steps
+    count = np.bincount(steps.run, minlength=len(steps.runs))
+    last = np.full(len(steps.runs), np.nan)
+    last[steps.run] = steps.clocks["wall_s"]
+    silent = steps.runs[(count == 1) & (last == steps.runs["wall_s"].to_numpy())]
+    follows = "they count as having found their path when they ended"
+    return (
+        "runs with a path that reported nothing on the way",
+        len(silent),
+        _by(silent["variant"]),
+        follows,
+    )
+
+
+def _without_count(evidence: Evidence, clock: str) -> _Row:
+    steps = evidence.steps
+    runs = steps.runs.loc[np.unique(steps.run[np.isnan(steps.clocks[clock])])]
+    what = f"runs with a path and no count of {'generations' if clock == 'generation' else clock}"
+    return what, len(runs), _by(runs["variant"]), "they are not in the charts over it"
+
+
+def _without_optimum(evidence: Evidence) -> _Row:
+    runs = evidence.steps.runs[np.isnan(evidence.steps.optimum)]
+    names = list(dict.fromkeys(runs["place"]))
+    follows = "no path exists, or no run came far enough to be told it; there is no gap"
+    return "scenes without an optimum", len(names), _some(names), follows
+
+
+def _not_drawn(pictures: list[ScenePicture]) -> _Row:
+    names = [picture.name for picture in pictures if picture.drawing is None]
+    return (
+        "scenes that are gone or have changed since",
+        len(names),
+        _some(names),
+        "they are not drawn",
+    )
+
+
+def _contended(evidence: Evidence) -> _Row:
+    runs = evidence.current[evidence.current["contended"].fillna(value=False).astype(bool)]
+    follows = "they waited for the processor: their wall times are longer than on an idle machine"
+    return "runs whose wall time can't be relied on", len(runs), _by(runs["variant"]), follows
+
+
+def _conflicts(evidence: Evidence) -> _Row:
+    follows = "the rows that were there first are shown"
+    return "rows of merged stores that say something else", evidence.conflicts, "", follows
+
+
+def _by(planners: "pd.Series[str]") -> str:
+    counts = planners.value_counts(sort=False)
+    return _some(f"{name} {count}" for name, count in counts.items())
+
+
+def _some(names: Iterable[str]) -> str:
+    names = list(names)
+    more = f" and {len(names) - NAMES_AT_MOST} more" if len(names) > NAMES_AT_MOST else ""
+    return ", ".join(names[:NAMES_AT_MOST]) + more

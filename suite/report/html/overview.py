@@ -1,0 +1,66 @@
+"""What was run, how it ended, and the main result."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from suite.planner import PlanStatus
+from suite.report.compared import at_a_glance
+from suite.report.html.evidence import Evidence
+from suite.report.summary import summary
+from suite.report.table import Table
+
+GAP_NOTE = (
+    "Mean gap of the paths found to the exact shortest one, per cent: 0 is optimal. In brackets "
+    "how many runs found a path, where not all did; a mean over few of the runs flatters."
+)
+
+
+def headline(evidence: Evidence) -> str:
+    """What was run, in a sentence or two."""
+    runs = evidence.runs
+    if runs.empty:
+        return "The store holds no runs yet. `kbga-bench run MATRIX --store STORE` fills it."
+    solved = int((runs["status"] == PlanStatus.SOLVED).sum())
+    matrices = list(dict.fromkeys(str(s.get("matrix")) for s in evidence.sessions if "matrix" in s))
+    of = f" of {', '.join(matrices)}" if matrices else ""
+    return (
+        f"{_count(len(runs), 'run')}{of}: {_count(runs['variant'].nunique(), 'planner')} in "
+        f"{_count(runs['scene'].nunique(), 'scene')}, {_count(runs['seed'].nunique(), 'seed')}. "
+        f"{_count(solved, 'run')} ended with a path that the referee accepts."
+    )
+
+
+def overview_tables(evidence: Evidence) -> list[Table]:
+    """How runs ended, and the mean gap of each planner in each scene."""
+    if evidence.runs.empty:
+        return []
+    tables = [Table("status", "How the runs ended", _by_status(evidence.runs))]
+    if not evidence.steps.runs.empty and not np.isnan(evidence.steps.optimum).all():
+        glanced = at_a_glance(summary(evidence.steps.runs), ["planner"], _gap)
+        tables.append(Table("gaps", "Mean gap to the optimum (%)", glanced, GAP_NOTE))
+    return tables
+
+
+def _by_status(runs: pd.DataFrame) -> pd.DataFrame:
+    order = dict.fromkeys(runs["variant"])
+    counts = pd.crosstab(runs["variant"], runs["status"]).reindex(list(order))
+    words = [str(status) for status in PlanStatus if str(status) in counts.columns]
+    counts = counts[words]
+    counts.insert(0, "runs", counts.sum(axis=1))
+    return counts.rename_axis("planner").rename_axis(None, axis=1).reset_index()
+
+
+def _gap(row: Mapping[Any, Any]) -> str:
+    share = f"{row['solved']} of {row['runs']}"
+    if pd.isna(row["gap mean (%)"]):
+        return share
+    # Rounding may leave a zero with a sign.
+    gap = f"{round(row['gap mean (%)'], 2) + 0.0:.2f}"
+    return gap if row["solved"] == row["runs"] else f"{gap} ({share})"
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number:,} {what}{'' if number == 1 else 's'}"

@@ -1,0 +1,114 @@
+"""The report as one file: everything that it shows is in it, and nothing is fetched.
+
+The same store gives the same bytes: no time, no random name, nothing of the machine that made it.
+"""
+
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+from plotly.offline import get_plotlyjs
+
+from suite.errors import KbgaBenchError
+from suite.report.html.appearance import appearance
+from suite.report.html.cells import sheet
+from suite.report.html.charts import convergence_chart, ecdf_chart
+from suite.report.html.drives import drive_sheets
+from suite.report.html.evidence import Evidence, read_evidence
+from suite.report.html.failures import failures_table, full_reasons
+from suite.report.html.missing import missing_table
+from suite.report.html.overview import headline, overview_tables
+from suite.report.html.player import played_runs
+from suite.report.html.provenance import provenance_tables
+from suite.report.html.scenes import scene_pictures
+
+SUFFIXES = (".html", ".htm")
+SCRIPTS = ("tables.js", "charts.js", "player.js")
+
+
+def write_report(store: Path, file: Path) -> None:
+    """Write the report of a store.
+
+    Parameters
+    ----------
+    store : Path
+        It is only read.
+    file : Path
+        Replaced if it is there.
+
+    Raises
+    ------
+    KbgaBenchError
+        If the store can't be read or the file can't be written.
+    """
+    if file.suffix.lower() not in SUFFIXES:
+        raise KbgaBenchError(f"{file}: a report is {' or '.join(SUFFIXES)}. Name such a file.")
+    if not file.parent.is_dir():
+        raise KbgaBenchError(f"{file}: there is no folder {file.parent}. Make it first.")
+    page = render_report(read_evidence(store))
+    try:
+        file.write_text(page, encoding="utf-8")
+    except OSError as error:
+        raise KbgaBenchError(f"{file}: can't be written ({error.strerror}).") from error
+
+
+def render_report(evidence: Evidence) -> str:
+    """The page.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    """
+    charts = {
+        "convergence": convergence_chart(evidence.steps, evidence.planners),
+        "ecdf": ecdf_chart(evidence.steps, evidence.planners),
+    }
+    pictures, pictures_left_out = scene_pictures(evidence)
+    played, played_left_out = played_runs(evidence, pictures)
+    drives, drives_left_out = drive_sheets(evidence)
+    return (
+        _environment()
+        .get_template("page.html.j2")
+        .render(
+            store=evidence.store.name,
+            headline=headline(evidence),
+            overview=[sheet(table) for table in overview_tables(evidence)],
+            pictures=pictures,
+            pictures_left_out=pictures_left_out,
+            charts=charts,
+            looks={name: appearance(number) for name, number in evidence.planners.items()},
+            played=played,
+            played_left_out=played_left_out,
+            drives=drives,
+            drives_left_out=drives_left_out,
+            tables=[sheet(table) for table in evidence.tables],
+            failures=sheet(failures_table(evidence.runs)),
+            reasons=full_reasons(evidence.runs),
+            missing=sheet(missing_table(evidence, pictures)),
+            provenance=[sheet(table) for table in provenance_tables(evidence)],
+            style=Markup(_text("style.css")),
+            scripts=[Markup(_text(name)) for name in SCRIPTS],
+            plotly=Markup(get_plotlyjs()) if any(charts.values()) else None,
+        )
+    )
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FunctionLoader(_text),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    compact: dict[str, Any] = {"separators": (",", ":"), "allow_nan": False, "ensure_ascii": False}
+    environment.policies["json.dumps_kwargs"] = compact
+    return environment
+
+
+def _text(name: str) -> str:
+    return files(__package__).joinpath(name).read_text(encoding="utf-8")

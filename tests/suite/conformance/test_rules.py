@@ -1,0 +1,66 @@
+"""The kit finds each broken planner, by the name of the rule that it breaks, and no other rule."""
+
+import inspect
+
+import pytest
+
+from suite.conformance.finding import Kind
+from suite.conformance.rules import RULES, WARNINGS, examine, rule_name
+from suite.conformance.subject import Subject
+from tests.suite.conformance import broken_planners
+
+CONCRETE = [
+    kind
+    for _, kind in inspect.getmembers(broken_planners, inspect.isclass)
+    if kind.__module__ == broken_planners.__name__ and "name" in vars(kind)
+]
+BROKEN = [kind for kind in CONCRETE if kind is not broken_planners.Detours]
+
+
+def named(planner_class):
+    results = examine(Subject(planner_class))
+    return {r.rule: r for r in results if r.kind in (Kind.BROKEN, Kind.WARNING)}
+
+
+def test_the_planner_that_the_broken_ones_are_made_of_breaks_no_rule():
+    assert named(broken_planners.Detours) == {}
+
+
+@pytest.mark.parametrize("planner_class", BROKEN, ids=lambda kind: kind.__name__)
+def test_a_broken_planner_is_found_and_no_other_rule_is_named(planner_class):
+    found = named(planner_class)
+    assert list(found) == [planner_class.__doc__]
+    (result,) = found.values()
+    for sentence in (result.finding.found, result.finding.expected, result.finding.mend):
+        assert sentence.strip()
+
+
+def test_each_rule_has_a_planner_that_breaks_it():
+    assert {kind.__doc__ for kind in BROKEN} == {rule_name(rule) for rule in RULES}
+
+
+def test_only_a_claimed_cost_is_a_warning():
+    assert {rule_name(rule) for rule in WARNINGS} == {"claimed-cost-is-the-length"}
+    kinds = {r.kind for r in named(broken_planners.ClaimsALowerCost).values()}
+    assert kinds == {Kind.WARNING}
+
+
+def test_a_finding_says_where_what_and_how_to_mend():
+    (result,) = named(broken_planners.StartsBesideTheStart).values()
+    assert result.finding.found.startswith("on 'empty scene' with seed 1 and Budget(generations=")
+    assert "(1.000000000001, 5.000000000001)" in result.finding.found
+    assert "query.start" in result.finding.mend
+
+
+def test_what_a_planner_changed_is_put_back():
+    import os
+    import random
+
+    before = os.getcwd(), dict(os.environ), random.getstate()  # noqa: PTH109
+    for planner_class in (
+        broken_planners.ChangesTheFolder,
+        broken_planners.ChangesTheEnvironment,
+        broken_planners.DrawsFromGlobalRandom,
+    ):
+        named(planner_class)
+    assert (os.getcwd(), dict(os.environ), random.getstate()) == before  # noqa: PTH109

@@ -1,0 +1,121 @@
+"""``kbga-bench check`` as authors run it: in a process of its own, which may hang or die."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from suite.errors import PluginError
+from suite.harness.check import check
+
+BROKEN = Path(__file__).parents[1] / "conformance" / "broken_planners.py"
+HANGING = """
+import ctypes, os, time
+from broken_planners import Detours
+
+class HangsAtTheEnd(Detours):
+    name = "hangs-at-the-end"
+
+    def refuse(self, scene, query, budget):
+        while scene.name == "seam":
+            time.sleep(0.01)
+
+class HangsInWarmUp(Detours):
+    name = "exits-in-warm-up"
+
+    def warm_up(self):
+        os._exit(3)
+
+class Crashes(Detours):
+    name = "crashes"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        print("talks on standard output", flush=True)
+        ctypes.string_at(0)
+"""
+
+
+@pytest.fixture(scope="module")
+def hanging(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("plugins")
+    (folder / "broken_planners.py").write_text(BROKEN.read_text())
+    file = folder / "hanging_planners.py"
+    file.write_text(HANGING)
+    return file
+
+
+def kbga_bench(*arguments, code):
+    done = subprocess.run(
+        [sys.executable, "-c", "from suite.cli import main; main()", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == code, done.stderr
+    return done
+
+
+def test_a_planner_that_keeps_the_contract_ends_with_code_0():
+    done = kbga_bench(
+        "check", "detours", "--plugin", f"{BROKEN}:Detours", "--set", "tries=20", code=0
+    )
+    assert done.stdout.endswith("detours: keeps the contract, 29 rules, 1 do not apply.\n")
+    assert "kept      same-seed-same-path\n" in done.stdout
+
+
+def test_a_broken_rule_is_named_and_how_to_mend_it_and_the_code_is_1():
+    arguments = ("check", "goes-straight", "--plugin", f"{BROKEN}:GoesStraight", "--format", "json")
+    told = json.loads(kbga_bench(*arguments, code=1).stdout)
+    assert (told["planner"], told["kept"]) == ("goes-straight", False)
+    (broken,) = [rule for rule in told["rules"] if rule["result"] == "broken"]
+    assert broken["rule"] == "path-is-free"
+    assert "enters obstacle 1" in broken["found"]
+    assert "first_collision" in broken["mend"]
+
+
+def test_a_warning_does_not_fail():
+    plugin = f"{BROKEN}:ClaimsALowerCost"
+    done = kbga_bench("check", "claims-a-lower-cost", "--plugin", plugin, code=0)
+    assert "WARNING   claimed-cost-is-the-length\n" in done.stdout
+
+
+def test_a_planner_that_hangs_is_killed_and_the_run_is_named(hanging):
+    began = time.monotonic()
+    arguments = ("check", "hangs-at-the-end", "--plugin", hanging, "--limit-s", 2)
+    done = kbga_bench(*arguments, code=1)
+    assert time.monotonic() - began < 60
+    assert "BROKEN    runs-end-without-an-exception\n" in done.stdout
+    assert "on 'seam' with seed 1 and Budget(generations=10): it did not end within 2 s" in (
+        done.stdout
+    )
+    left = [p for p in psutil.process_iter(["cmdline"]) if str(hanging) in str(p.info["cmdline"])]
+    assert left == []
+
+
+@pytest.mark.parametrize(
+    ("planner", "rule", "end"),
+    [
+        ("crashes", "runs-end-without-an-exception", "died with signal SIGSEGV"),
+        ("exits-in-warm-up", "warms-up", "died with exit code 3"),
+    ],
+)
+def test_a_planner_that_dies_is_named_with_its_end(hanging, planner, rule, end):
+    done = kbga_bench("check", planner, "--plugin", hanging, code=1)
+    assert f"BROKEN    {rule}\n" in done.stdout
+    assert end in done.stdout
+    assert "standard output" not in done.stdout
+
+
+def test_what_cannot_be_loaded_or_set_is_an_error_and_no_broken_rule(hostile):
+    with pytest.raises(PluginError, match=r"no planner 'kgba'\..*Did you mean 'kbga'"):
+        check("kgba")
+    with pytest.raises(PluginError, match="planner 'broken' is unavailable: ModuleNotFoundError"):
+        check("broken")
+    with pytest.raises(PluginError, match="no setting 'populaton'"):
+        check("plain-ga", {"populaton": 3})
+    assert os.environ.get("KBGA_BENCH_PLUGINS") is None
