@@ -8,7 +8,7 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from baselines.extremity import ExtremityPlanner, pinches, regions_of
+from baselines.extremity import ExtremityPlanner, ExtremitySettings, pinches, regions_of
 from suite.exact import shortest_path
 from suite.planner import Budget, Plan, PlanStatus, Recorder
 from suite.scene import Query, Scene, make_scene
@@ -115,6 +115,27 @@ def test_a_path_that_slips_through_a_point_is_never_returned():
     assert len(regions_of(scene, scene.query())) == 1
     made = plan(scene)
     assert (made.status, made.path) == (PlanStatus.EXHAUSTED, None)
+
+
+def test_a_scene_with_more_vertices_than_the_setting_allows_is_refused():
+    scene = load_scene("double_u")
+    few = ExtremityPlanner(ExtremitySettings(most_vertices=10))
+    assert few.refuse(scene, scene.query(), Budget()) == (
+        "extremitypathfinder would prepare 23 vertices, which takes it long; most_vertices is 10. "
+        "Raise it if you have the time."
+    )
+    assert ExtremityPlanner().refuse(scene, scene.query(), Budget()) is None
+    with pytest.raises(ValueError, match=r"most_vertices is 0\. It must be 1 or more"):
+        ExtremitySettings(most_vertices=0)
+
+
+def test_time_that_is_over_ends_a_preparation_that_would_take_minutes():
+    scene = load_scene("scattered_500")
+    recorder, rng = Recorder(), np.random.default_rng(0)
+    budget = Budget(wall_s=0.5)
+    made = ExtremityPlanner().plan(scene, scene.query(), budget, rng, recorder)
+    assert made.status is PlanStatus.EXHAUSTED
+    assert recorder.wall_s() < 30.0
 
 
 def test_a_pinch_in_another_piece_of_free_space_refuses_nothing():

@@ -11,6 +11,9 @@ from suite.plugins import GROUP, load_planner, make_settings
 
 OURS = [p.name for p in entry_points(group=GROUP) if p.dist and p.dist.name == "kbga-bench"]
 
+FEWER = {"extremitypathfinder": 24}
+"""Rules kept by one that refuses some scenes: then no rule about repeated runs applies."""
+
 
 @pytest.mark.parametrize("name", OURS)
 def test_it_breaks_no_rule_and_needs_no_warning(name):
@@ -19,7 +22,7 @@ def test_it_breaks_no_rule_and_needs_no_warning(name):
     short = {"default_wall_s": 0.1} if name.startswith("ompl-") else {}
     results = list(examine(Subject(planner_class, make_settings(planner_class, short))))
     assert [r for r in results if r.kind in (Kind.BROKEN, Kind.WARNING)] == []
-    assert sum(r.kind is Kind.KEPT for r in results) >= 26
+    assert sum(r.kind is Kind.KEPT for r in results) >= FEWER.get(name, 26)
 
 
 def test_there_are_planners_to_examine():
