@@ -201,7 +201,7 @@ def _load(name: str, sources: Sequence[Source]) -> type[Planner]:
         # Other people's code: whatever its import raises must not end the listing.
         found = sources[0].load()
     except PluginError:
-        raise
+        raise  # the plugin's own sentence, such as how to install what it needs
     except (Exception, SystemExit) as error:
         raise PluginError(f"{type(error).__name__}: {error}") from error
     wrong = flaw(found)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from suite.errors import ContractError, SceneError
+from suite.errors import ContractError, PluginError, SceneError
 from suite.geometry.tolerances import COST_CLAIM_RELATIVE
 from suite.harness.machine import host_name, load_average
 from suite.harness.prepared import (
@@ -60,6 +60,8 @@ def run_cell(
         return _run(cell, blank, recorder or Recorder(), before_plan)
     except MemoryError:
         return replace(blank, status=PlanStatus.OUT_OF_MEMORY, reason=_last_lines())
+    except PluginError as error:
+        return replace(blank, reason=str(error))  # a whole sentence: no traceback adds to it
     except (Exception, SystemExit):
         # Other people's code: whatever it raises is an outcome of its run, and no reason to stop.
         return replace(blank, reason=_last_lines())

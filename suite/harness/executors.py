@@ -30,7 +30,10 @@ from suite.planner import PlanStatus
 from suite.record import Cell, RunRecord
 
 CONNECT_S = 10.0
-"""How long a scheduler may take to answer, and its first worker to be there."""
+"""How long a scheduler may take to answer, at first and when the connection is broken."""
+
+FIRST_WORKER_S = 10.0
+"""How long its first worker may take to be there."""
 
 END_S = 5.0
 """How long to wait for killed runs to be gone."""
@@ -158,7 +161,7 @@ def connect(address: str) -> DaskExecutor:
             "`dask scheduler`, and give the address that it prints."
         ) from error
     try:
-        client.wait_for_workers(1, timeout=CONNECT_S)
+        client.wait_for_workers(1, timeout=FIRST_WORKER_S)
     except TimeoutError as error:
         client.close()
         raise HarnessError(
@@ -268,10 +271,10 @@ def record_of(future: "Future[RunRecord]", cell: Cell) -> RunRecord:
 
 def _lost(error: BaseException) -> HarnessError:
     return HarnessError(
-        f"the executor was lost ({_one_line(error) or type(error).__name__}). All finished runs "
+        f"the executor was lost ({_one_line(error)}). All finished runs "
         "are kept; to go on, start it again and give the same command again."
     )
 
 
 def _one_line(error: BaseException) -> str:
-    return " ".join(str(error).split())
+    return " ".join(str(error).split()) or type(error).__name__

@@ -21,6 +21,7 @@ from suite.report.dynamic_figures import plot_snapshots
 from suite.report.export import export_rows, made_folder
 from suite.report.figures import LINES, plot_scene_results, save
 from suite.report.newest import newest
+from suite.report.paper_pictures import paper_pictures
 from suite.report.rank_figures import rank_figures
 from suite.report.replanning_figure import plot_replanning
 from suite.report.runtime_figures import runtime_figures
@@ -40,6 +41,7 @@ from suite.store import (
     read_sessions,
     read_simulation,
     read_simulations,
+    read_snapshots,
 )
 
 MANIFEST = "manifest.json"
@@ -85,7 +87,10 @@ def write_results(store: Path, directory: Path, *, leave_out: Collection[str] = 
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
     planned = current[~is_simulated(current)]
     files += _write_figures(_figures(planned, read_events(store)), folder)
-    files += _write_scene_figures(planned, read_paths(store), scenes, folder)
+    paths = read_paths(store)
+    pictures = paper_pictures(planned, paths, read_snapshots(store), scenes)
+    files += _write_figures(pictures, folder)
+    files += _write_scene_figures(planned, paths, scenes, folder)
     driven = current[is_simulated(current)]
     if not driven.empty:
         files += _write_figures({REPLANNING: plot_replanning(driven, read_replans(store))}, folder)

@@ -97,7 +97,9 @@ def test_the_planners_of_this_project_are_declared():
         "rrtstar", "informedrrtstar", "sorrtstar", "bitstar", "aorrtc", "prm", "prmstar", "rrt",
         "rrtconnect", "fmt", "bfmt",
     )  # fmt: skip
-    declared = {"kbga", "plain-ga", "visibility-graph", *(f"ompl-{name}" for name in ompl)}
+    others = ("cmaes", "extremitypathfinder", "grid-astar")
+    ours = ("kbga", "plain-ga", "visibility-graph")
+    declared = {*ours, *others, *(f"ompl-{name}" for name in ompl)}
     assert declared <= set(planner_names())
 
 
@@ -156,6 +158,19 @@ def test_a_plugin_that_fails_to_import_is_a_row_and_stops_nothing(install, code,
     with pytest.raises(PluginError, match="planner 'broken' is unavailable: ") as error:
         load_planner("broken")
     assert reason in str(error.value)
+
+
+def test_a_plugin_that_says_itself_why_it_is_unavailable_is_quoted(install):
+    code = (
+        "from suite.errors import PluginError\n"
+        "raise PluginError('it needs boots. Install them with: pip install boots')"
+    )
+    install("walkers", {"walk": "walkers:Walk"}, code)
+    said = "unavailable: it needs boots. Install them with: pip install boots"
+    assert row("walk").reason == said
+    with pytest.raises(PluginError) as error:
+        load_planner("walk")
+    assert str(error.value) == f"planner 'walk' is {said}"
 
 
 @pytest.mark.parametrize(

@@ -4,15 +4,18 @@ import os
 import subprocess
 import sys
 import time
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
+from types import SimpleNamespace
 
+import dask
 import numpy as np
 import psutil
 import pytest
+from distributed import KilledWorker
 
 from suite.errors import HarnessError
 from suite.harness import executors
-from suite.harness.executors import connect, new_session
+from suite.harness.executors import connect, new_session, record_of
 from suite.harness.matrix import Limits, load_matrix
 from suite.harness.run import run_matrix
 from suite.harness.single import cell_for
@@ -85,10 +88,10 @@ def test_a_cluster_gives_the_same_rows_though_a_worker_dies(cluster, matrix_file
             first.kill()
             killed.append(progress.done)
 
-    with connect(cluster.address) as dask:
-        wait_until(lambda: dask.slots() == 2)
-        runs, paths = run(matrix, tmp_path / "dask.db", executor=dask, on_progress=kill_first)
-        assert dask.slots() == 1
+    with connect(cluster.address) as there:
+        wait_until(lambda: there.slots() == 2)
+        runs, paths = run(matrix, tmp_path / "dask.db", executor=there, on_progress=kill_first)
+        assert there.slots() == 1
     assert killed
     assert killed[0] < 3 * SEEDS
     local, local_paths = run(matrix, tmp_path / "local.db", jobs=2)
@@ -114,8 +117,8 @@ def test_an_interruption_ends_the_runs_on_the_workers(cluster, matrix_file, tmp_
             wait_until(lambda: len(family(worker)) >= busy)
             raise KeyboardInterrupt
 
-    with connect(cluster.address) as dask, pytest.raises(KeyboardInterrupt) as interrupted:
-        run(matrix, tmp_path / "s.db", executor=dask, on_progress=interrupt)
+    with connect(cluster.address) as there, pytest.raises(KeyboardInterrupt) as interrupted:
+        run(matrix, tmp_path / "s.db", executor=there, on_progress=interrupt)
     assert not getattr(interrupted.value, "__notes__", [])
     wait_until(lambda: len(family(worker)) < busy, patience_s=10)
     assert worker.is_running()
@@ -151,9 +154,38 @@ def test_a_scheduler_that_is_not_there_is_an_error_before_anything_is_written(
 
 
 def test_a_cluster_without_workers_says_how_to_start_some(cluster, monkeypatch):
-    monkeypatch.setattr(executors, "CONNECT_S", 0.5)
+    monkeypatch.setattr(executors, "FIRST_WORKER_S", 0.5)
     with pytest.raises(HarnessError, match=f"dask worker {cluster.address} --no-nanny"):
         connect(cluster.address)
+
+
+def test_a_run_that_takes_its_workers_along_is_a_row():
+    future = Future()
+    future.set_exception(KilledWorker("run-1", SimpleNamespace(address="tcp://node7:1"), 3))
+    record = record_of(future, make_cell())
+    assert record.status is PlanStatus.CRASHED
+    assert "tcp://node7:1" in record.reason
+
+
+def test_a_cluster_that_is_lost_says_how_to_go_on():
+    future = Future()
+    future.cancel()
+    with pytest.raises(HarnessError, match="All finished runs are kept; to go on"):
+        record_of(future, make_cell())
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_dies_ends_the_matrix_and_keeps_its_rows(cluster, matrix_file, tmp_path):
+    def kill_scheduler(progress):
+        if progress.done == 1:
+            cluster.processes[0].kill()
+
+    matrix = load_matrix(matrix_file("wanderer", "sleeper", seeds=SEEDS))
+    cluster.add_worker()
+    patience = dask.config.set({"distributed.comm.timeouts.connect": "1s"})
+    with patience, connect(cluster.address) as there, pytest.raises(HarnessError, match="was lost"):
+        run(matrix, tmp_path / "s.db", executor=there, on_progress=kill_scheduler)
+    assert 1 <= len(read_runs(tmp_path / "s.db")) < 2 * SEEDS
 
 
 def test_without_dask_the_extra_is_named(monkeypatch):

@@ -5,6 +5,7 @@ import pytest
 from suite.errors import MatrixError
 from suite.harness.matrix import Limits, load_matrix, matrix_names
 from suite.planner import Budget
+from suite.plugins import available_planners
 
 GOOD = """
 name = "walls"
@@ -142,6 +143,13 @@ def test_a_matrix_without_planners_is_refused(written):
     text = GOOD[: GOOD.index("[[planner]]")]
     assert "'planner' is missing: give at least one [[planner]]." in refused(written(text))
     assert "no array of tables" in refused(written(text + '[planner]\nplanner = "kbga"\n'))
+
+
+def test_the_matrix_of_all_planners_leaves_none_of_ours_out():
+    ours = {p.name for p in available_planners() if p.distribution == "kbga-bench"}
+    matrix = load_matrix("all-planners")
+    assert {variant.plugin.name for variant in matrix.variants} == ours
+    assert len(matrix.cells()) == len(ours) * 8 * 20
 
 
 def test_an_unknown_matrix_is_refused_with_the_names_that_there_are():
