@@ -149,5 +149,6 @@ def duration(seconds: float) -> str:
     whole = max(1, round(seconds))
     for big, small, length, part in (("d", "h", 86400, 3600), ("h", "min", 3600, 60)):
         if whole >= length:
-            return f"{whole // length} {big} {whole % length // part} {small}"
+            parts, per_length = round(whole / part), length // part
+            return f"{parts // per_length} {big} {parts % per_length} {small}"
     return f"{whole // 60} min {whole % 60} s" if whole >= 60 else f"{whole} s"

@@ -5,6 +5,7 @@ Python computes the lines, of medians and quartiles only; plotly draws them in t
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -164,21 +165,13 @@ def _band_traces(planner: str, look: Appearance, x: Array, band: Array) -> list[
     if not began.any():
         return []
     kept = began & _corners(low, middle, high)
-    nothing = {"x": _rounded(x[kept]), "hoverinfo": "skip", "mode": "lines"}
-    thin = {"width": 0, "shape": "hv", "color": look.colour}
+    places = _rounded(x[kept])
     has_path = np.isfinite(band[1])
-    median = _line(planner, look, x[has_path], middle[has_path], band[1][has_path])
-    traces = [
-        go.Scatter(y=_rounded(low[kept]), line=thin, **nothing),
-        go.Scatter(
-            y=_rounded(high[kept]),
-            line=thin,
-            fill="tonexty",
-            fillcolor=_see_through(look.colour),
-            **nothing,
-        ),
+    return [
+        _edge(look) | {"x": places, "y": _rounded(low[kept])},
+        _edge(look, fill="tonexty") | {"x": places, "y": _rounded(high[kept])},
+        _line(planner, look, x[has_path], middle[has_path], band[1][has_path]),
     ]
-    return [*(trace.to_plotly_json() for trace in traces), median]
 
 
 def _ecdf_trace(
@@ -195,14 +188,30 @@ def _ecdf_trace(
 def _line(planner: str, look: Appearance, x: Array, y: Array, told: Array) -> dict[str, Any]:
     """A line at y, of which a reader who points at it is told the true numbers."""
     # With every place on the axis, not the steps alone: numbers are shown where there is a point.
+    numbers = {"x": _rounded(x), "y": _rounded(y), "customdata": _rounded(told)}
+    return _style(planner, look) | numbers
+
+
+@cache
+def _style(planner: str, look: Appearance) -> dict[str, Any]:
+    # Without its numbers: plotly would look at each of them several times, and copy all.
     trace = go.Scatter(
-        x=_rounded(x),
-        y=_rounded(y),
         name=planner,
         mode="lines",
         line={"color": look.colour, "dash": look.dash, "width": 2, "shape": "hv"},
-        customdata=_rounded(told),
         hovertemplate="%{customdata:.3~g} %",
+    )
+    return dict(trace.to_plotly_json())
+
+
+@cache
+def _edge(look: Appearance, fill: str = "none") -> dict[str, Any]:
+    trace = go.Scatter(
+        mode="lines",
+        line={"width": 0, "shape": "hv", "color": look.colour},
+        fill=fill,
+        fillcolor=_see_through(look.colour),
+        hoverinfo="skip",
     )
     return dict(trace.to_plotly_json())
 

@@ -79,6 +79,7 @@ def render_report(evidence: Evidence) -> str:
             pictures=pictures,
             pictures_left_out=pictures_left_out,
             charts=charts,
+            planned=not evidence.steps.runs.empty or evidence.runs.empty,
             looks={name: appearance(number) for name, number in evidence.planners.items()},
             played=played,
             played_left_out=played_left_out,

@@ -3,13 +3,15 @@
 import numpy as np
 import pytest
 
+from suite.report.anytime import steps_of
 from suite.report.html.appearance import COLOURS, PLANNERS_AT_MOST, appearance
 from suite.report.html.charts import ALL_SCENES, LINES_AT_MOST, convergence_chart, ecdf_chart
 from suite.report.html.evidence import read_evidence
 from suite.report.html.player import played_runs
 from suite.report.html.scenes import SCENES_AT_MOST, scene_pictures
+from suite.report.panels import numbered
 from suite.report.runtime_figures import TARGETS
-from suite.store import read_paths
+from suite.store import read_events, read_paths, read_runs
 from tests.suite.harness.records import make_cell, make_record
 from tests.suite.report.html.stores import failed, some_store, write_store
 
@@ -54,11 +56,13 @@ def test_a_chart_has_room_for_so_many_scenes_and_says_how_many_it_left_out(tmp_p
         for i in range(30)
         for j in range(20)
     ]
-    found = read_evidence(write_store(tmp_path / "many.db", records))
-    chart = convergence_chart(found.steps, found.planners)
+    file = write_store(tmp_path / "many.db", records)
+    steps = steps_of(read_runs(file), read_events(file))
+    planners = numbered(steps.runs["variant"])
+    chart = convergence_chart(steps, planners)
     assert len(chart.scenes) == LINES_AT_MOST // 20 < SCENES_AT_MOST
     assert chart.left_out == 30 - len(chart.scenes)
-    assert len(ecdf_chart(found.steps, found.planners).scenes) == len(chart.scenes) + 1
+    assert len(ecdf_chart(steps, planners).scenes) == len(chart.scenes) + 1
 
 
 def test_without_a_path_there_is_no_chart(tmp_path):
