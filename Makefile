@@ -62,6 +62,9 @@ leave-ablation := --leave-out traces
 leave-mutation-rate := --leave-out traces
 leave-penalty := --leave-out traces
 leave-tuning := --leave-out traces
+leave-obstacles := --leave-out traces
+leave-kbga-rounds := --leave-out traces
+leave-resolution := --leave-out traces
 leave-paper-dynamic := --leave-out paths
 
 results: $(CAMPAIGNS:%=results-%)
@@ -69,7 +72,7 @@ results: $(CAMPAIGNS:%=results-%)
 	$(BIN)/kbga-bench merge out/paper.db $(PAPER:%=out/%.db)
 	$(BIN)/kbga-bench tables out/paper.db --format markdown --output results/paper
 	$(BIN)/kbga-bench tables out/paper.db --format csv --output results/paper
-	$(BIN)/kbga-bench report out/paper.db -o results/paper/report.html
+	$(BIN)/kbga-bench report out/paper-static.db -o results/paper/report.html
 
 $(CAMPAIGNS:%=results-%): results-%: setup
 	mkdir -p out

@@ -84,10 +84,7 @@ def load_planner(name: str) -> type[Planner]:
     """
     declared = _declared()
     if name not in declared:
-        installed = ", ".join(sorted(declared)) or "none"
-        raise PluginError(
-            f"no planner '{name}'. Installed: {installed}.{_did_you_mean(name, declared)}"
-        )
+        raise _unknown(name, declared)
     try:
         return _load(name, declared[name])
     except PluginError as error:
@@ -97,6 +94,20 @@ def load_planner(name: str) -> type[Planner]:
 def available_planners() -> list[PluginInfo]:
     """Import every declared planner and say of each what came of it, sorted by name."""
     return [_describe(name, points) for name, points in sorted(_declared().items())]
+
+
+def planner_info(name: str) -> PluginInfo:
+    """Import one planner, and no other, and say what came of it.
+
+    Raises
+    ------
+    PluginError
+        If no planner has that name.
+    """
+    declared = _declared()
+    if name not in declared:
+        raise _unknown(name, declared)
+    return _describe(name, declared[name])
 
 
 def planner_version(name: str) -> str | None:
@@ -181,6 +192,13 @@ def _declared() -> dict[str, list[Source]]:
 def _did_you_mean(word: str, words: Iterable[str]) -> str:
     near = difflib.get_close_matches(word, list(words), n=1)
     return f" Did you mean '{near[0]}'?" if near else ""
+
+
+def _unknown(name: str, declared: Iterable[str]) -> PluginError:
+    installed = ", ".join(sorted(declared)) or "none"
+    return PluginError(
+        f"no planner '{name}'. Installed: {installed}.{_did_you_mean(name, declared)}"
+    )
 
 
 def _distribution(source: Source) -> tuple[str, str]:

@@ -46,9 +46,9 @@ from suite.harness.toml_reader import Reader, read_toml
 from suite.planner import Budget
 from suite.plugins import (
     PluginInfo,
-    available_planners,
     load_planner,
     make_settings,
+    planner_info,
     planner_names,
     settings_as_dict,
 )
@@ -318,21 +318,21 @@ def _seeds(reader: Reader) -> tuple[int, ...]:
 
 def _variants(reader: Reader, *, simulated: bool) -> tuple[Variant, ...]:
     tables = reader.tables("planner")
-    plugins = {plugin.name: plugin for plugin in available_planners()}
-    variants = [_variant(table, plugins, simulated=simulated) for table in tables]
+    variants = [_variant(table, simulated=simulated) for table in tables]
     _refuse_twins(reader, "planners", [variant.name for variant in variants])
     return tuple(variants)
 
 
-def _variant(table: Reader, plugins: Mapping[str, PluginInfo], *, simulated: bool) -> Variant:
+def _variant(table: Reader, *, simulated: bool) -> Variant:
     table.allow("name", "planner", "settings", "budget", *(["cold"] if simulated else []))
     planner = table.text("planner")
     table = table.renamed(f"planner '{table.values.get('name', planner)}'")
-    if planner not in plugins:
-        known = ", ".join(planner_names())
-        hint = table.near(planner, plugins)
-        raise table.error(f"there is no planner '{planner}'. Installed: {known}.{hint}")
-    plugin = plugins[planner]
+    known = planner_names()
+    if planner not in known:
+        hint = table.near(planner, known)
+        raise table.error(f"there is no planner '{planner}'. Installed: {', '.join(known)}.{hint}")
+    # The others are not imported: they bring libraries of their own.
+    plugin = planner_info(planner)
     settings = table.table("settings").values
     if plugin.available:
         try:

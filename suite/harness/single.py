@@ -7,7 +7,7 @@ from suite.errors import KbgaBenchError
 from suite.exact import shortest_path
 from suite.harness.prepared import planner_class, prepared_scene
 from suite.planner import Budget, PlanStatus
-from suite.plugins import available_planners, make_settings, settings_as_dict
+from suite.plugins import make_settings, planner_info, settings_as_dict
 from suite.record import Cell, RunRecord, World
 from suite.scene import scene_fingerprint
 
@@ -54,7 +54,7 @@ def cell_for(
     scene = prepared_scene(source)
     wanted = scene.query(query)
     found = planner_class(planner)
-    plugin = next(p for p in available_planners() if p.name == planner)
+    plugin = planner_info(planner)
     return Cell(
         scene=scene.name,
         scene_source=source,

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection
 from pathlib import Path
+from typing import Final
 
 import pandas as pd
 
@@ -17,6 +18,9 @@ from suite.store import (
 
 OF_SIMULATIONS = ("simulations", "replans")
 """Files that only stores of simulated runs have."""
+
+COMPRESSION: Final = "zstd"
+"""A quarter less than parquet's usual one, and read by the same libraries."""
 
 
 def export_rows(
@@ -63,7 +67,7 @@ def export_rows(
         file = folder / f"{name}.{kind}"
         try:
             if kind == "parquet":
-                frame.to_parquet(file, index=False)
+                frame.to_parquet(file, index=False, compression=COMPRESSION)
             else:
                 frame.to_csv(file, index=False, lineterminator="\n")
         except OSError as error:

@@ -48,8 +48,8 @@ AROUND = 0.8
 ONE_COLUMN_FROM = 34
 """Characters of a legend's line of which two no longer stand side by side."""
 
-RASTER_DPI = 150
-RASTER_COLOURS = 256
+RASTER_DPI = 130
+RASTER_COLOURS = 96
 """Enough for lines, shades and their soft edges, in a third of the bytes of all colours."""
 
 

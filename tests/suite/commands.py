@@ -1,5 +1,6 @@
 """The command ``kbga-bench`` in processes of its own."""
 
+import signal
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -20,3 +21,11 @@ def in_own_process(*arguments, code=0, env=None):
     )
     assert done.returncode == code, done.stderr
     return Done(done.returncode, done.stdout, done.stderr)
+
+
+def hear_interrupts():
+    """In a new process, before its program: let Ctrl-C end it.
+
+    What a shell runs in the background ignores it, children included: nobody would be tested.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -13,7 +13,7 @@ import psutil
 import pytest
 
 from suite.store import read_paths, read_runs
-from tests.suite.commands import COMMAND, in_own_process
+from tests.suite.commands import COMMAND, hear_interrupts, in_own_process
 
 SEEDS = 4
 SAMPLE = 3
@@ -43,6 +43,7 @@ def start(matrix, store, mark):
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        preexec_fn=hear_interrupts,
     )
 
 

@@ -11,6 +11,8 @@ import uuid
 import psutil
 import pytest
 
+from tests.suite.commands import hear_interrupts
+
 HARNESS = """
 import sys
 from suite.harness.run import run_matrix
@@ -43,6 +45,7 @@ def harness(hostile, wall_file, tmp_path, marked):
             env={**os.environ, name: value},
             stderr=subprocess.PIPE,
             start_new_session=True,
+            preexec_fn=hear_interrupts,
         )
         running.append(process)
         return process
