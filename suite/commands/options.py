@@ -43,6 +43,11 @@ PluginOption = Annotated[
         "them; repeatable.",
     ),
 ]
+WallOption = Annotated[float | None, typer.Option(help="Budget of a plan: seconds of wall time.")]
+GenerationsOption = Annotated[
+    int | None, typer.Option(help="Budget of a plan: generations or iterations.")
+]
+ChecksOption = Annotated[int | None, typer.Option(help="Budget of a plan: collision checks.")]
 TextStyle = Annotated[TextFormat, typer.Option("--format", help="For people or programs.")]
 TableStyle = Annotated[TableFormat, typer.Option("--format", help="How to print them.")]
 

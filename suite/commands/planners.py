@@ -11,6 +11,8 @@ from typing import Annotated
 import typer
 
 from suite.commands.options import (
+    ChecksOption,
+    GenerationsOption,
     PlannerOption,
     PluginOption,
     QueryOption,
@@ -19,6 +21,7 @@ from suite.commands.options import (
     SettingsOption,
     TextFormat,
     TextStyle,
+    WallOption,
     use_plugins,
 )
 from suite.commands.output import print_json
@@ -38,11 +41,9 @@ def plan(
     query: QueryOption = None,
     settings: SettingsOption = None,
     plugin: PluginOption = None,
-    wall_s: Annotated[float | None, typer.Option(help="Budget: seconds of wall time.")] = None,
-    generations: Annotated[
-        int | None, typer.Option(help="Budget: generations or iterations.")
-    ] = None,
-    checks: Annotated[int | None, typer.Option(help="Budget: collision checks.")] = None,
+    wall_s: WallOption = None,
+    generations: GenerationsOption = None,
+    checks: ChecksOption = None,
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw the run: .png, .pdf or .svg.")
     ] = None,
@@ -161,13 +162,9 @@ def simulate(
     charge: Annotated[
         Charge, typer.Option(help="Simulated time that planning takes: its own, or none.")
     ] = Charge.MEASURED,
-    wall_s: Annotated[float | None, typer.Option(help="Budget of each plan: seconds.")] = None,
-    generations: Annotated[
-        int | None, typer.Option(help="Budget of each plan: generations or iterations.")
-    ] = None,
-    checks: Annotated[
-        int | None, typer.Option(help="Budget of each plan: collision checks.")
-    ] = None,
+    wall_s: WallOption = None,
+    generations: GenerationsOption = None,
+    checks: ChecksOption = None,
     plot: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw snapshots: .png, .pdf or .svg.")
     ] = None,

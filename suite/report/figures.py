@@ -200,16 +200,21 @@ def _scene_figure(scene: Scene) -> tuple[Figure, Axes]:
     height = WIDTH * min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0) + AROUND
     figure, axes = plt.subplots(figsize=(WIDTH, height), layout="constrained")
     draw_room(axes, scene)
+    draw_obstacles(axes, scene, 0.7)
+    return figure, axes
+
+
+def draw_obstacles(axes: Axes, scene: Scene, linewidth: float) -> None:
+    """Draw all obstacles as they are drawn in the scene, wherever they move."""
     for obstacle in scene.obstacles:
         axes.add_patch(
             PathPatch(
                 outline(obstacle.polygon),
                 facecolor=OBSTACLE,
                 edgecolor=OBSTACLE_EDGE,
-                linewidth=0.7,
+                linewidth=linewidth,
             )
         )
-    return figure, axes
 
 
 def draw_room(axes: Axes, scene: Scene) -> PathPatch:

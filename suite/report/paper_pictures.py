@@ -14,19 +14,16 @@ import shapely
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import PathPatch
 from numpy.typing import NDArray
 
 from suite.paper.reported import KBGA, PLAIN_GA, WITHOUT_CROSSOVER_AND_MUTATION
 from suite.planner import Snapshot
 from suite.report.figures import (
     LINES,
-    OBSTACLE,
-    OBSTACLE_EDGE,
     POPULATION,
     draw_ends,
+    draw_obstacles,
     draw_room,
-    outline,
 )
 from suite.report.summary import feasible
 from suite.scene import Query, Scene
@@ -250,15 +247,7 @@ def _panels(scene: Scene, query: Query, count: int) -> tuple[Figure, list[Axes]]
         axes.set_visible(False)
     for axes in grid.flat[:count]:
         draw_room(axes, scene)
-        for obstacle in scene.obstacles:
-            axes.add_patch(
-                PathPatch(
-                    outline(obstacle.polygon),
-                    facecolor=OBSTACLE,
-                    edgecolor=OBSTACLE_EDGE,
-                    linewidth=0.5,
-                )
-            )
+        draw_obstacles(axes, scene, 0.5)
         draw_ends(axes, query, 0.6)
         axes.tick_params(labelsize=7)
         axes.set_xlabel("x (m)", fontsize=8)
