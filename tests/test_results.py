@@ -1,0 +1,107 @@
+"""Tables of results/ come out of the rows beside them; what the README says stands in results/."""
+
+import json
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from suite.report.table import Format, render
+from suite.report.tables import all_tables
+
+ROOT = Path(__file__).parents[1]
+RESULTS = ROOT / "results"
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAPER = ("paper-static", "paper-dynamic", "resolution")
+CAMPAIGNS = sorted(path.parents[1] for path in RESULTS.glob("*/rows/runs.parquet"))
+
+
+def together(name: str, folders: Sequence[Path]) -> pd.DataFrame | None:
+    files = [folder / "rows" / f"{name}.parquet" for folder in folders]
+    frames = [pd.read_parquet(file) for file in files if file.exists()]
+    if not frames:
+        return None
+    frame = pd.concat(frames, ignore_index=True)
+    # As a store gives them back.
+    order = {"runs": ["position"], "events": ["key", "number"]}.get(name)
+    return frame if order is None else frame.sort_values(order, kind="stable", ignore_index=True)
+
+
+def first_measures(folders: Sequence[Path]) -> pd.DataFrame | None:
+    traces = together("traces", folders)
+    return None if traces is None else traces.groupby("key").first()
+
+
+def check_tables(folder: Path, *sources: Path) -> None:
+    """Make all tables of a folder again from rows, and compare them letter by letter."""
+    tables = all_tables(
+        together("runs", sources),
+        first_measures(sources),
+        together("events", sources),
+        simulations=together("simulations", sources),
+        replans=together("replans", sources),
+    )
+    made = {f"{table.name}.csv": render(table, Format.CSV) for table in tables}
+    there = {file.name: file.read_text(encoding="utf-8") for file in folder.glob("*.csv")}
+    if not all((source / "rows" / "traces.parquet").exists() for source in sources):
+        # Its best costs of first populations come out of the traces.
+        there.pop("paper-figures.csv", None)
+    assert there
+    assert [name for name, text in there.items() if made.get(name) != text] == []
+
+
+@pytest.mark.parametrize("folder", CAMPAIGNS, ids=lambda folder: folder.name)
+def test_the_tables_of_a_campaign_come_out_of_its_rows(folder):
+    check_tables(folder, folder)
+
+
+def test_the_tables_of_the_paper_come_out_of_the_rows_of_its_campaigns():
+    check_tables(RESULTS / "paper", *(RESULTS / name for name in PAPER))
+
+
+@pytest.mark.parametrize("folder", CAMPAIGNS, ids=lambda folder: folder.name)
+def test_the_rows_of_a_campaign_come_from_one_clean_commit(folder):
+    manifest = json.loads((folder / "manifest.json").read_text())
+    commits = {session["git"]["commit"] for session in manifest["sessions"]}
+    assert len(commits) == 1
+    assert not any(session["git"]["dirty"] for session in manifest["sessions"])
+    assert manifest["runs"] == len(together("runs", [folder]))
+
+
+# The README
+
+
+def table_under(heading: str) -> list[list[str]]:
+    """Cells of the first table after a text, without its ruler."""
+    lines = README[README.index(heading) :].splitlines()
+    start = next(i for i, line in enumerate(lines) if line.startswith("|"))
+    cells = []
+    for line in lines[start:]:
+        if not line.startswith("|"):
+            break
+        cells.append([cell.strip() for cell in line.strip("|").split("|")])
+    return [cells[0], *cells[2:]]
+
+
+def test_the_gaps_of_the_readme_are_those_of_the_summary():
+    summary = pd.read_csv(RESULTS / "paper-static" / "summary.csv").set_index(["scene", "planner"])
+    (_, _, *planners), *lines = table_under("## What came out")
+    for scene, _, *cells in lines:
+        for planner, cell in zip(planners, cells, strict=True):
+            row = summary.loc[(scene, re.sub(r" \(.*", "", planner))]
+            some = (
+                "" if row["solved"] == row["runs"] else f", {row['solved']} of {row['runs']} runs"
+            )
+            # Rounding may leave a zero with a sign.
+            told = f"{round(row['gap mean (%)'], 2) + 0.0:.2f} %{some}"
+            assert cell == (told if row["solved"] else f"no path in {row['runs']} runs"), scene
+
+
+def test_table_1_of_the_readme_is_that_of_the_results():
+    lines = table_under("The paper's Table 1")
+    text = (RESULTS / "paper-static" / "paper-table-1.md").read_text()
+    for cells in lines[1:]:
+        pattern = r"\s*\|\s*".join(map(re.escape, cells))
+        assert re.search(rf"\|\s*{pattern}\s*\|", text), cells
