@@ -25,6 +25,14 @@ class ExportFormat(StrEnum):
     PLANNER_ARENA = "planner-arena"
 
 
+class FigureFormat(StrEnum):
+    """Files that figures are written to."""
+
+    PNG = "png"
+    PDF = "pdf"
+    SVG = "svg"
+
+
 class Rows(StrEnum):
     """Rows that a results folder can do without, once its tables and figures are made."""
 
@@ -126,6 +134,9 @@ def results(
         list[Rows] | None,
         typer.Option(help="Rows that are not written, where they are too many; repeatable."),
     ] = None,
+    figures: Annotated[
+        FigureFormat, typer.Option(help="Kind of the figures; pdf and svg are vectors.")
+    ] = FigureFormat.PNG,
 ) -> None:
     """Make a results folder: tables, rows, figures of scenes and studies, and the manifest.
 
@@ -133,7 +144,8 @@ def results(
     """
     from suite.report.results import write_results
 
-    for path in write_results(store, directory, leave_out={kind.value for kind in leave_out or []}):
+    left_out = {kind.value for kind in leave_out or []}
+    for path in write_results(store, directory, leave_out=left_out, figures=figures.value):
         typer.echo(path)
 
 

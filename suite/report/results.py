@@ -3,7 +3,7 @@
 import hashlib
 import json
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from suite.dynamic.plain import from_data
 from suite.errors import KbgaBenchError, StoreError
-from suite.report.anytime import steps_of
+from suite.report.anytime import Steps, steps_of
 from suite.report.comparison_figures import comparison_figures
 from suite.report.convergence_figures import convergence_figures
 from suite.report.dynamic_figures import plot_snapshots
@@ -50,7 +50,9 @@ REPLANNING = "replanning"
 """Name of the figure of simulated runs."""
 
 
-def write_results(store: Path, directory: Path, *, leave_out: Collection[str] = ()) -> list[Path]:
+def write_results(
+    store: Path, directory: Path, *, leave_out: Collection[str] = (), figures: str = "png"
+) -> list[Path]:
     """Make a results folder from a store; the same store gives the same bytes.
 
     There are figures of each study and of how the planners compare, and one of the best paths for
@@ -64,6 +66,8 @@ def write_results(store: Path, directory: Path, *, leave_out: Collection[str] = 
     leave_out : collection of str
         Kinds of rows that are not written, for they are too many: ``events``, ``traces``,
         ``paths``. The manifest names them.
+    figures : str
+        ``png``, or the vectors ``pdf`` and ``svg``.
 
     Returns
     -------
@@ -85,16 +89,10 @@ def write_results(store: Path, directory: Path, *, leave_out: Collection[str] = 
     files = write_tables(tables, folder, Format.MARKDOWN)
     files += write_tables(tables, folder, Format.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
-    planned = current[~is_simulated(current)]
-    files += _write_figures(_figures(planned, read_events(store)), folder)
-    paths = read_paths(store)
-    pictures = paper_pictures(planned, paths, read_snapshots(store), scenes)
-    files += _write_figures(pictures, folder)
-    files += _write_scene_figures(planned, paths, scenes, folder)
-    driven = current[is_simulated(current)]
-    if not driven.empty:
-        files += _write_figures({REPLANNING: plot_replanning(driven, read_replans(store))}, folder)
-        files += _write_snapshots(driven, store, folder)
+    for name, figure in _figures(store, current, scenes):
+        file = folder / f"{name}.{figures}"
+        save(figure, file)
+        files.append(file)
     manifest = folder / MANIFEST
     made = _manifest(store, runs, folder, files, leave_out)
     _write_text(manifest, json.dumps(made, indent=2) + "\n")
@@ -151,54 +149,50 @@ def _scenes(runs: pd.DataFrame) -> list[tuple[Scene, Query]]:
     return pairs
 
 
-def _figures(runs: pd.DataFrame, events: pd.DataFrame) -> dict[str, Figure]:
-    """All figures but those of the scenes, by the names of their files."""
-    steps = steps_of(runs, events)
-    return {
-        **study_figures(runs),
-        **convergence_figures(steps),
-        **runtime_figures(steps),
-        **comparison_figures(steps),
-        **rank_figures(steps),
-    }
+def _figures(
+    store: Path, current: pd.DataFrame, scenes: list[tuple[Scene, Query]]
+) -> Iterator[tuple[str, Figure]]:
+    """All figures, each with the name of its file."""
+    planned, driven = current[~is_simulated(current)], current[is_simulated(current)]
+    paths = read_paths(store)
+    yield from study_figures(planned).items()
+    yield from _comparisons(steps_of(planned, read_events(store)))
+    yield from paper_pictures(planned, paths, read_snapshots(store), scenes).items()
+    yield from _scene_figures(planned, paths, scenes)
+    if not driven.empty:
+        yield REPLANNING, plot_replanning(driven, read_replans(store))
+        yield from _snapshot_sheets(driven, store)
 
 
-def _write_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
-    files = []
-    for name, figure in figures.items():
-        file = folder / f"{name}.png"
-        save(figure, file)
-        files.append(file)
-    return files
+def _comparisons(steps: Steps) -> Iterator[tuple[str, Figure]]:
+    """How the planners compare."""
+    yield from convergence_figures(steps).items()
+    yield from runtime_figures(steps).items()
+    yield from comparison_figures(steps).items()
+    yield from rank_figures(steps).items()
 
 
-def _write_scene_figures(
-    runs: pd.DataFrame, paths: dict[str, Any], scenes: list[tuple[Scene, Query]], folder: Path
-) -> list[Path]:
-    files = []
+def _scene_figures(
+    runs: pd.DataFrame, paths: dict[str, Any], scenes: list[tuple[Scene, Query]]
+) -> Iterator[tuple[str, Figure]]:
+    """The best paths of each scene, where a reader can still tell them apart."""
     for scene, query in scenes:
         here = runs[(runs["scene"] == scene.name) & (runs["query"] == query.name)]
         if here.empty or here["variant"].nunique() > len(LINES):
             continue
         best, labels = _best_paths(here, paths)
         several = len(scene.queries) > 1
-        file = folder / (f"{scene.name}-{query.name}.png" if several else f"{scene.name}.png")
-        save(plot_scene_results(scene, query, best, labels=labels), file)
-        files.append(file)
-    return files
+        name = f"{scene.name}-{query.name}" if several else scene.name
+        yield name, plot_scene_results(scene, query, best, labels=labels)
 
 
-def _write_snapshots(runs: pd.DataFrame, store: Path, folder: Path) -> list[Path]:
+def _snapshot_sheets(runs: pd.DataFrame, store: Path) -> Iterator[tuple[str, Figure]]:
     """A sheet of the first run of the first planner in each world."""
-    files = []
     for (source, world), group in runs.groupby(["scene_source", "world"], sort=False):
         data = read_simulation(store, group["key"].iloc[0])
         figure = plot_snapshots(from_data(load_scene(str(source)), data))
         figure.suptitle(f"{data['scene']}, {world}: {group['variant'].iloc[0]}", fontsize=11)
-        file = folder / f"{data['scene']}-{_slug(str(world))}.png"
-        save(figure, file)
-        files.append(file)
-    return files
+        yield f"{data['scene']}-{_slug(str(world))}", figure
 
 
 def _slug(text: str) -> str:

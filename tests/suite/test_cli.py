@@ -381,6 +381,17 @@ def test_the_same_store_gives_the_same_bytes(kbga_bench, filled, tmp_path):
         assert file.read_bytes() == other.read_bytes(), file.name
 
 
+@pytest.mark.parametrize("kind", ["pdf", "svg"])
+def test_figures_of_results_are_vectors_if_asked_for_and_the_same_bytes_each_time(
+    kbga_bench, filled, tmp_path, kind
+):
+    for name in "ab":
+        kbga_bench("results", filled, tmp_path / name / "r", "--figures", kind)
+    first = tmp_path / "a" / "r" / f"wall.{kind}"
+    assert first.read_bytes() == (tmp_path / "b" / "r" / f"wall.{kind}").read_bytes()
+    assert not list((tmp_path / "a" / "r").glob("*.png"))
+
+
 def test_export_writes_a_file_for_each_kind_of_row(kbga_bench, filled, tmp_path):
     kbga_bench("export", filled, tmp_path, "--to", "csv")
     assert {p.name for p in tmp_path.glob("*.csv")} == {
