@@ -105,3 +105,78 @@ def test_table_1_of_the_readme_is_that_of_the_results():
     for cells in lines[1:]:
         pattern = r"\s*\|\s*".join(map(re.escape, cells))
         assert re.search(rf"\|\s*{pattern}\s*\|", text), cells
+
+
+def test_the_dynamic_table_of_the_readme_is_that_of_the_results():
+    folder = RESULTS / "paper-dynamic"
+    answered, fared = (
+        pd.read_csv(folder / f"{name}.csv") for name in ("replanning", "simulations")
+    )
+    both = answered.merge(fared, on=["scene", "world", "planner"]).set_index(["world", "planner"])
+    for planner, *cells in table_under("### While the robot moves")[2:]:
+        told = []
+        for world in ("Fig. 11", "section III-E"):
+            row = both.loc[(world, planner)]
+            above = round(row["above exact (%)"], 1) + 0.0
+            told += [
+                f"{row['latency median (ms)']:.2f} ms",
+                f"{row['latency worst (ms)']:.0f} ms",
+                f"{above:+.1f} %" if above else "0.0 %",
+            ]
+        assert cells == told, planner
+    assert f"In all {fared['runs'].sum()} runs of all planners" in README
+    assert (fared["unhurt (%)"] == 100.0).all()
+
+
+def test_the_times_of_the_readme_are_those_of_the_performance():
+    times = pd.read_csv(RESULTS / "performance" / "time_to_1_percent.csv")
+    kbga = times[times["planner"] == "kbga"].set_index("scene")["time to 1 % (ms)"]
+    for scene, ours, best, factor, _ in table_under("### How fast")[1:]:
+        assert ours == f"{kbga[scene]:.2g} ms", scene
+        others = times[(times["scene"] == scene) & times["planner"].str.startswith("ompl-")]
+        fastest = others.sort_values("time to 1 % (ms)").iloc[0]
+        ratio = float(f"{fastest['over kbga']:.2g}")
+        if best.startswith("none"):
+            assert factor == f"over {ratio:.0f}", scene
+        else:
+            time = float(f"{fastest['time to 1 % (ms)']:.2g}")
+            assert best == f"{fastest['planner'].removeprefix('ompl-')}: {time:g} ms", scene
+            assert float(factor) == ratio, scene
+
+
+STUDIES = [
+    ("obstacles", "ratio total", "scattered_300", "scene", "{:.1f} times among 300"),
+    ("obstacles", "ratio total", "scattered_3000", "scene", "{:.0f} among\n  3,000"),
+    ("obstacles", "gap mean (%)", "scattered_3000", "scene", "at a gap of {:.2f} %"),
+]
+
+
+@pytest.mark.parametrize(("study", "column", "value", "key", "words"), STUDIES)
+def test_figures_in_the_prose_of_the_readme_are_those_of_the_studies(
+    study, column, value, key, words
+):
+    frame = pd.read_csv(RESULTS / study / f"study-{study}.csv").set_index(key)
+    assert words.format(frame.loc[value, column]) in README
+
+
+def test_the_ratios_of_the_readme_are_those_of_the_studies():
+    obstacles = pd.read_csv(RESULTS / "obstacles" / "study-obstacles.csv")["ratio total"][:3]
+    rows = pd.read_csv(RESULTS / "resolution" / "study-resolution-rows.csv")
+    resolutions = rows[rows["scene"] == "unstructured"]["ratio total"]
+    for ratios in (obstacles, resolutions):
+        assert "1 : " + " : ".join(f"{ratio:.2f}" for ratio in ratios.iloc[1:]) in README
+
+
+def test_the_share_of_python_in_the_readme_is_that_of_the_rows():
+    runs = together("runs", [RESULTS / "paper-static"])
+    for planner, words in (("ompl-rrtstar", "of RRT*'s time"), ("ompl-prmstar", "of PRM*'s")):
+        details = runs.loc[runs["planner"] == planner, "details"].map(json.loads)
+        low, high = pd.Series([d["callback_share"] for d in details]).quantile([0.05, 0.95])
+        assert f"{low:.2f} to {high:.2f} {words}" in README
+
+
+def test_the_verdicts_are_counted_in_the_changelog_as_they_are():
+    words = pd.read_csv(RESULTS / "paper" / "paper-figures.csv")["verdict"].value_counts()
+    told = f"({words.sum()}: {words['agrees']} agree, {words['better']} are better, "
+    changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert told + f"{words['not comparable']} can't be compared)" in changelog
