@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from suite.conformance.scenes import SmallScene, small_scenes
-from suite.conformance.surroundings import Surroundings, fingerprint, seed_globals
+from suite.conformance.surroundings import Surroundings, fingerprint
 from suite.exact import shortest_path
+from suite.global_generators import seed_globals
 from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder
 from suite.referee import Referee, Verdict
 from suite.scene import Scene

@@ -56,12 +56,6 @@ class Surroundings:
         return [name for name, before, now in pairs if before != now]
 
 
-def seed_globals(seed: int) -> None:
-    """Seed the global generators, as the harness does: who draws from them still repeats itself."""
-    random.seed(seed)
-    np.random.seed(seed)  # noqa: NPY002
-
-
 def fingerprint(scene: Scene, query: Query) -> str:
     """Hash of all that a planner is given of a scene; another one if any of it was written to."""
     shapes = [scene.workspace.wkb, *(obstacle.polygon.wkb for obstacle in scene.obstacles)]

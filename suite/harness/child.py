@@ -4,7 +4,6 @@ import contextlib
 import fcntl
 import multiprocessing
 import os
-import random
 import select
 import signal
 import traceback
@@ -13,9 +12,7 @@ from dataclasses import dataclass, replace
 from multiprocessing import forkserver
 from multiprocessing.connection import Connection
 
-import numpy as np
-from numpy.random import mtrand
-
+from suite.global_generators import seed_globals
 from suite.harness.cell import run_cell
 from suite.harness.family import adopt_orphans, has_children
 from suite.planner import PlanStatus, Recorder
@@ -66,7 +63,8 @@ def run_in_child(
     stderr.close()
     _die_with_parent()
     _pin(core)
-    _seed_globals(cell)
+    # All children inherit the server's state: careless plugins would all draw the same numbers.
+    seed_globals(int(cell.key, 16))
     recorder = Recorder(snapshot_of=snapshots_of.__contains__)
     record = _record(cell, recorder, lambda: messages.send(PLANNING))
     # A planner that forks may come back twice.
@@ -137,14 +135,3 @@ def _die_with_parent() -> None:
     # It may have died before the line above.
     if select.select([pipe], [], [], 0)[0]:
         os._exit(1)
-
-
-def _seed_globals(cell: Cell) -> None:
-    """Give careless plugins that draw from a global generator another stream in each run.
-
-    All children inherit the server's state: without this they would all draw the same numbers.
-    """
-    seed = int(cell.key, 16)
-    random.seed(seed)
-    # Of the kind that numpy starts with: a plugin's own np.random.seed then still works.
-    mtrand.set_bit_generator(np.random.MT19937(np.random.SeedSequence(seed)))
