@@ -54,18 +54,16 @@ perf: setup
 		--benchmark-columns=median,max,rounds --benchmark-sort=name
 	$(BIN)/python -m tests.perf.performance_table out/performance.json results/performance
 
-# Everything in results/ that comes from a matrix: half an hour on two cores, nothing else running.
-CAMPAIGNS := paper-static paper-dynamic resolution obstacles kbga-rounds ablation mutation-rate \
-	penalty first-population tuning
+# Everything in results/ that comes from a matrix: three quarters of an hour on two cores, nothing
+# else running.
+STUDIES := resolution obstacles kbga-rounds ablation mutation-rate penalty first-population tuning
+CAMPAIGNS := paper-static paper-dynamic all-planners $(STUDIES)
 PAPER := paper-static paper-dynamic resolution
-leave-ablation := --leave-out traces
-leave-mutation-rate := --leave-out traces
-leave-penalty := --leave-out traces
-leave-tuning := --leave-out traces
-leave-obstacles := --leave-out traces
-leave-kbga-rounds := --leave-out traces
-leave-resolution := --leave-out traces
-leave-paper-dynamic := --leave-out paths
+$(STUDIES:%=results-%): LEAVE := --leave-out comparisons --leave-out paths --leave-out traces
+# Its traces stand behind the figures of the paper.
+results-resolution: LEAVE := --leave-out comparisons --leave-out paths
+results-paper-dynamic: LEAVE := --leave-out paths
+results-all-planners: LEAVE := --leave-out paths --leave-out traces
 
 results: $(CAMPAIGNS:%=results-%)
 	rm -f out/paper.db
@@ -77,7 +75,7 @@ results: $(CAMPAIGNS:%=results-%)
 $(CAMPAIGNS:%=results-%): results-%: setup
 	mkdir -p out
 	$(BIN)/kbga-bench run $* --store out/$*.db --jobs $(JOBS)
-	$(BIN)/kbga-bench results out/$*.db results/$* $(leave-$*)
+	$(BIN)/kbga-bench results out/$*.db results/$* $(LEAVE)
 
 # What the harness itself costs. On a machine that does nothing else.
 harness: setup

@@ -33,12 +33,13 @@ class FigureFormat(StrEnum):
     SVG = "svg"
 
 
-class Rows(StrEnum):
-    """Rows that a results folder can do without, once its tables and figures are made."""
+class Part(StrEnum):
+    """What a results folder can do without: rows, and pictures of how the planners compare."""
 
     EVENTS = "events"
     TRACES = "traces"
     PATHS = "paths"
+    COMPARISONS = "comparisons"
 
 
 def tables(
@@ -131,8 +132,8 @@ def results(
     store: StoreArgument,
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where to; made if missing.")],
     leave_out: Annotated[
-        list[Rows] | None,
-        typer.Option(help="Rows that are not written, where they are too many; repeatable."),
+        list[Part] | None,
+        typer.Option(help="Rows, or comparisons (pictures), that are not written; repeatable."),
     ] = None,
     figures: Annotated[
         FigureFormat, typer.Option(help="Kind of the figures; pdf and svg are vectors.")
@@ -144,7 +145,7 @@ def results(
     """
     from suite.report.results import write_results
 
-    left_out = {kind.value for kind in leave_out or []}
+    left_out = {part.value for part in leave_out or []}
     for path in write_results(store, directory, leave_out=left_out, figures=figures.value):
         typer.echo(path)
 

@@ -21,6 +21,7 @@ from suite.report.dynamic_figures import plot_snapshots
 from suite.report.export import export_rows, made_folder
 from suite.report.figures import LINES, plot_scene_results, save
 from suite.report.newest import newest
+from suite.report.overview_figure import overview_figures
 from suite.report.paper_pictures import paper_pictures
 from suite.report.rank_figures import rank_figures
 from suite.report.replanning_figure import plot_replanning
@@ -46,6 +47,9 @@ from suite.store import (
 
 MANIFEST = "manifest.json"
 
+COMPARISONS = "comparisons"
+"""Name of the pictures of how planners compare, where they are left out."""
+
 REPLANNING = "replanning"
 """Name of the figure of simulated runs."""
 
@@ -64,8 +68,8 @@ def write_results(
     directory : Path
         Made if it is missing; files of the same names are replaced.
     leave_out : collection of str
-        Kinds of rows that are not written, for they are too many: ``events``, ``traces``,
-        ``paths``. The manifest names them.
+        Rows that are not written, for they are too many (``events``, ``traces``, ``paths``), and
+        pictures (``comparisons``: of how the planners compare). The manifest names them.
     figures : str
         ``png``, or the vectors ``pdf`` and ``svg``.
 
@@ -89,7 +93,8 @@ def write_results(
     files = write_tables(tables, folder, Format.MARKDOWN)
     files += write_tables(tables, folder, Format.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
-    for name, figure in _figures(store, current, scenes):
+    compares = COMPARISONS not in leave_out
+    for name, figure in _figures(store, current, scenes, compares=compares):
         file = folder / f"{name}.{figures}"
         save(figure, file)
         files.append(file)
@@ -150,13 +155,14 @@ def _scenes(runs: pd.DataFrame) -> list[tuple[Scene, Query]]:
 
 
 def _figures(
-    store: Path, current: pd.DataFrame, scenes: list[tuple[Scene, Query]]
+    store: Path, current: pd.DataFrame, scenes: list[tuple[Scene, Query]], *, compares: bool
 ) -> Iterator[tuple[str, Figure]]:
-    """All figures, each with the name of its file."""
+    """All figures, each with the name of its file; if wanted, those of how planners compare."""
     planned, driven = current[~is_simulated(current)], current[is_simulated(current)]
     paths = read_paths(store)
     yield from study_figures(planned).items()
-    yield from _comparisons(steps_of(planned, read_events(store)))
+    if compares:
+        yield from _comparisons(steps_of(planned, read_events(store)))
     yield from paper_pictures(planned, paths, read_snapshots(store), scenes).items()
     yield from _scene_figures(planned, paths, scenes)
     if not driven.empty:
@@ -166,6 +172,7 @@ def _figures(
 
 def _comparisons(steps: Steps) -> Iterator[tuple[str, Figure]]:
     """How the planners compare."""
+    yield from overview_figures(steps).items()
     yield from convergence_figures(steps).items()
     yield from runtime_figures(steps).items()
     yield from comparison_figures(steps).items()

@@ -357,6 +357,13 @@ def test_rows_that_are_too_many_are_left_out_and_the_manifest_says_so(kbga_bench
     kbga_bench("results", filled, tmp_path / "r", "--leave-out", "runs", code=2)
 
 
+def test_pictures_of_how_planners_compare_are_left_out_where_there_are_others(
+    kbga_bench, filled, tmp_path
+):
+    kbga_bench("results", filled, tmp_path / "r", "--leave-out", "comparisons")
+    assert [picture.name for picture in (tmp_path / "r").glob("*.png")] == ["wall.png"]
+
+
 def test_a_scene_with_more_planners_than_can_be_told_apart_has_no_picture(
     kbga_bench, wall_file, tmp_path
 ):

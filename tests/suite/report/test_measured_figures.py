@@ -9,6 +9,7 @@ from suite.report.anytime import Steps
 from suite.report.comparison_figures import comparison_figures
 from suite.report.convergence_figures import convergence_figures, plot_convergence
 from suite.report.figures import save
+from suite.report.overview_figure import overview_figures
 from suite.report.panels import LEAST_GAP
 from suite.report.rank_figures import joined, rank_figures
 from suite.report.runtime_figures import plot_ecdf, runtime_figures
@@ -17,12 +18,14 @@ from tests.suite.report.measured_rows import measured, steps
 SCENES = ("zigzag", "maze", "double_u")
 NAMES = {
     "convergence-time", "convergence-generations", "convergence-checks", "ecdf",
-    "performance-profile", "gap-boxes", "gap-time", "critical-difference",
+    "performance-profile", "gap-boxes", "gap-time", "critical-difference", "overview",
 }  # fmt: skip
 
 
 def figures_of(found: Steps) -> dict[str, plt.Figure]:
-    made = (convergence_figures, runtime_figures, comparison_figures, rank_figures)
+    made = (
+        overview_figures, convergence_figures, runtime_figures, comparison_figures, rank_figures,
+    )  # fmt: skip
     return {name: figure for make in made for name, figure in make(found).items()}
 
 
@@ -156,6 +159,26 @@ def test_planners_that_do_not_differ_are_joined_in_the_largest_groups():
     assert joined([1.0, 3.0], 1.5) == []
 
 
+def test_the_overview_has_every_planner_and_scene_in_the_order_of_the_ranks(figures):
+    gaps, times = figures["overview"].axes
+    planners = ["visibility-graph", "kbga", "slow", "fails"]
+    assert [label.get_text() for label in gaps.get_yticklabels()] == planners
+    assert [label.get_text() for label in gaps.get_xticklabels()] == list(SCENES)
+    a_row = len(SCENES)
+    assert texts(gaps)[::a_row] == ["0.00", "1.00", "0.60, 67 %", "no path"]
+    assert texts(times)[::a_row] == ["0.5", "9", "40", "-"]
+
+
+def test_the_overview_says_of_thirty_planners_what_lines_can_no_longer_tell():
+    rows = [
+        measured(f"p{i}", 0, [(1.0, 101.0 + i)], scene=scene) for i in range(30) for scene in "ab"
+    ]
+    made = figures_of(steps(*rows))
+    assert set(made) == {"overview", "critical-difference"}
+    assert len(made["overview"].axes[0].get_yticklabels()) == 30
+    plt.close("all")
+
+
 @pytest.mark.parametrize("name", sorted(NAMES))
 def test_figures_are_small_files(figures, tmp_path, name):
     save(figures[name], tmp_path / "a.png")
@@ -182,8 +205,8 @@ FAILED = [measured(p, 0, [], status=PlanStatus.ERROR, optimum=None) for p in "ab
         ([], set()),
         (FAILED, set()),
         ([measured("a", 0, [(1.0, 101.0)], optimum=None)], set()),
-        ([ONE], NAMES - {"performance-profile", "critical-difference"}),
-        ([ONE, *FAILED[1:]], NAMES - {"critical-difference"}),
+        ([ONE], NAMES - {"performance-profile", "critical-difference", "overview"}),
+        ([ONE, *FAILED[1:]], NAMES - {"critical-difference", "overview"}),
         ([measured(f"p{i}", 0, [(1.0, 101.0)]) for i in range(13)], set()),
     ],
     ids=["no run", "all failed", "no optimum", "one run", "one path", "too many planners"],
