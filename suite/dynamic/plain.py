@@ -87,7 +87,8 @@ def from_data(scene: Scene, data: Mapping[str, Any]) -> Simulation:
 
 def _replan_as_data(replan: Replan) -> dict[str, Any]:
     data = {field.name: getattr(replan, field.name) for field in fields(replan)}
-    return {**data, "place": replan.place.tolist(), "path": _listed(replan.path)}
+    lists = {"place": replan.place.tolist(), "path": _listed(replan.path)}
+    return {**data, **lists, "details": dict(replan.details)}
 
 
 def _replan_from_data(data: Mapping[str, Any]) -> Replan:

@@ -60,7 +60,7 @@ class Replan:
     cost : its length, metres.
     optimum : length of the shortest path in what was known, metres; None if there is none.
     latency_s : wall time of the call, seconds; None if nobody was asked.
-    generations, checks : what the plan says of them.
+    generations, checks, details : what the plan says of them.
     """
 
     time: float
@@ -74,6 +74,7 @@ class Replan:
     latency_s: float | None = None
     generations: int | None = None
     checks: int | None = None
+    details: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -341,6 +342,7 @@ def _judged(
         latency_s=latency_s,
         generations=plan.generations,
         checks=plan.checks,
+        details={str(name): float(value) for name, value in plan.details.items()},
     )
 
 

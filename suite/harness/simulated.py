@@ -1,9 +1,10 @@
 """One simulated run, in this process: a planner that plans again and again as its robot drives."""
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from statistics import median
 from typing import Any
 
 import numpy as np
@@ -37,7 +38,7 @@ def simulated(blank: RunRecord, planner: Planner, rng: np.random.Generator) -> R
     -------
     RunRecord
         ``solved`` if the robot came to the goal unhurt, ``invalid`` if it was hit, ``exhausted``
-        if it did not arrive in time.
+        if it did not arrive in time. Its details are medians over the plans.
     """
     cell = blank.cell
     if cell.world is None:
@@ -59,6 +60,7 @@ def simulated(blank: RunRecord, planner: Planner, rng: np.random.Generator) -> R
         generations=_total(r.generations for r in done.replans),
         checks=_total(r.checks for r in done.replans),
         wall_s=_total(r.latency_s for r in done.replans),
+        details=_medians([r.details for r in done.replans]),
         path=done.trajectory.xy,
         simulation=as_data(done),
     )
@@ -104,6 +106,12 @@ def _total(values: Iterable[Any]) -> Any:
     """The sum of what is known; None if nothing is."""
     known = [value for value in values if value is not None]
     return sum(known) if known else None
+
+
+def _medians(details: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """The median of each number over the plans that gave it."""
+    names = dict.fromkeys(name for given in details for name in given)
+    return {name: median(given[name] for given in details if name in given) for name in names}
 
 
 class _Exact(Replanner):

@@ -1,5 +1,7 @@
 """A simulated run as a row: what its columns mean when a planner plans many times."""
 
+from statistics import median
+
 import pytest
 import shapely
 
@@ -23,9 +25,9 @@ def file_of(tmp_path):
     return write
 
 
-def run(source, planner, *, cold=False, **world):
+def run(source, planner, *, cold=False, budget=None, **world):
     world = world_for(source, {"charge": "zero", "interval": 1.0, **world}, cold=cold)
-    return run_cell(cell_for(source, planner, seed=0, world=world))
+    return run_cell(cell_for(source, planner, seed=0, world=world, budget=budget or Budget()))
 
 
 WALL = Obstacle("wall", shapely.box(4, 2, 6, 10))
@@ -43,6 +45,14 @@ def test_a_robot_that_arrives_unhurt_is_solved_at_the_length_of_its_way(file_of)
     assert record.checks == sum(r["checks"] for r in replans)
     assert record.wall_s == pytest.approx(sum(r["latency_s"] for r in replans))
     assert record.path.tolist() == [[x, y] for _, x, y in record.simulation["trajectory"]]
+
+
+def test_what_a_planner_says_of_each_plan_is_kept_and_its_medians_stand_in_the_row(file_of):
+    record = run(file_of(WALL), "ompl-rrtconnect", budget=Budget(checks=2000))
+    shares = [r["details"]["callback_share"] for r in record.simulation["replans"]]
+    assert len(set(shares)) > 1
+    assert record.details["callback_share"] == median(shares)
+    assert run(file_of(WALL), "visibility-graph").details == {}
 
 
 def test_a_robot_that_is_hit_is_invalid_and_the_reason_says_by_what_and_when(file_of):
