@@ -92,7 +92,10 @@ def run(
     if dry_run:
         from suite.harness.forecast import forecast_matrix
 
-        typer.echo(forecast_matrix(wanted, store, jobs=jobs, quick=quick, which=which).as_text())
+        with _executor(address) as cluster:
+            at_a_time = cluster.slots() if cluster and jobs is None else jobs
+        told = forecast_matrix(wanted, store, jobs=at_a_time, quick=quick, which=which)
+        typer.echo(told.as_text())
         return
     with _executor(address) as cluster, open_store(store) as opened:
         clean = _merge_into(opened, merge or [])

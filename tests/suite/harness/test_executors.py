@@ -153,6 +153,19 @@ def test_a_scheduler_that_is_not_there_is_an_error_before_anything_is_written(
     assert not store.exists()
 
 
+def test_a_dry_run_counts_with_the_workers_of_the_cluster(cluster, matrix_file, tmp_path):
+    for _ in range(3):
+        cluster.add_worker()
+    store = tmp_path / "s.db"
+    command = ("run", matrix_file("wanderer"), "--store", store, "--dry-run")
+    there = ("--executor", "dask", "--address", cluster.address)
+    with connect(cluster.address) as patient:
+        wait_until(lambda: patient.slots() == 3)
+    assert "with 3 jobs" in in_own_process(*command, *there).out
+    assert "with 5 jobs" in in_own_process(*command, *there, "--jobs", "5").out
+    assert not store.exists()
+
+
 def test_a_cluster_without_workers_says_how_to_start_some(cluster, monkeypatch):
     monkeypatch.setattr(executors, "FIRST_WORKER_S", 0.5)
     with pytest.raises(HarnessError, match=f"dask worker {cluster.address} --no-nanny"):
