@@ -148,6 +148,7 @@ class Recorder:
     improvements : list of Improvement, costs falling.
     trace : list of dicts, one for each generation that the planner chose to describe.
     snapshots : list of Snapshot, of the generations that were asked for.
+    started : what ``time.perf_counter`` said when the clock started.
 
     Parameters
     ----------
@@ -164,12 +165,12 @@ class Recorder:
 
     def start_clock(self) -> None:
         """Set the clock to zero. The harness calls it, immediately before ``plan``."""
-        self._wall = time.perf_counter()
+        self.started = time.perf_counter()
         self._cpu = time.process_time()
 
     def wall_s(self) -> float:
         """Seconds of wall time since the clock started."""
-        return time.perf_counter() - self._wall
+        return time.perf_counter() - self.started
 
     def cpu_s(self) -> float:
         """Seconds of CPU time of this process since the clock started."""

@@ -5,6 +5,7 @@ and nothing else. pandas reads it; see :func:`read_runs`.
 """
 
 import json
+import math
 import sqlite3
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
@@ -462,6 +463,8 @@ def _as_row(record: RunRecord) -> dict[str, Any]:
     row |= {f"budget_{name}": value for name, value in cell.budget_as_dict.items()}
     row["key"] = cell.key
     row["status"] = str(record.status)
+    # What an exception says may hold half a character, as names of files do.
+    row["reason"] = record.reason and record.reason.encode("utf-8", "replace").decode()
     row["settings"] = canonical_json(cell.settings)
     row["settings_hash"] = short_hash(cell.settings)
     world = cell.world
@@ -478,7 +481,12 @@ def _insert(table: str, row: Mapping[str, Any]) -> str:
 
 def _columns(trace: tuple[Mapping[str, float], ...]) -> dict[str, list[float | None]]:
     names = dict.fromkeys(name for measures in trace for name in measures)
-    return {name: [measures.get(name) for measures in trace] for name in names}
+    return {name: [_finite(measures.get(name)) for measures in trace] for name in names}
+
+
+def _finite(value: float | None) -> float | None:
+    """JSON has no word for NaN and infinity: what is written in its stead can't be read again."""
+    return value if value is not None and math.isfinite(value) else None
 
 
 def _packed(snapshot: Snapshot) -> bytes:

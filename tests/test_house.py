@@ -14,7 +14,7 @@ FLOORS = (
     {"compiled", "errors", "geometry", "global_generators", "quiet"},
     {"dynamics", "scene", "scene_file", "exact"},
     {"planner", "plugin_class", "plugin_file", "plugins"},
-    {"scenes", "record", "referee"},
+    {"scenes", "record", "referee", "reported"},
     {"conformance", "merge", "store"},
     {"harness", "dynamic", "report", "paper", "listing", "new_planner"},
     {"commands"},

@@ -23,9 +23,10 @@ planner), so there is no time step to choose.
 """
 
 import gc
+import time
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
@@ -37,10 +38,12 @@ from suite.dynamic.robot import Robot
 from suite.dynamic.settings import Charge, WorldSettings
 from suite.dynamic.trajectory import Crossing, Trajectory, crossings
 from suite.dynamic.world import World
+from suite.errors import ContractError
 from suite.exact import path_length, shortest_path
 from suite.geometry.kernels import first_collision
 from suite.planner import Budget, Plan, PlanStatus, Recorder, Replanner
 from suite.referee import judge
+from suite.reported import as_count
 from suite.scene import Query, Scene
 
 ENCLOSED = "enclosed"
@@ -291,6 +294,7 @@ class _Run:
         # The garbage on the heap is the simulation's: collecting it is not the planner's time.
         gc.disable()
         recorder.start_clock()
+        started = recorder.started  # whatever the planner does to the recorder
         try:
             plan = self._ask(known, query, self._budget, recorder)
         except (Exception, SystemExit):
@@ -298,7 +302,7 @@ class _Run:
             plan = Plan(PlanStatus.ERROR)
             reason = traceback.format_exc(limit=-1).strip()
         # The one clock stops here: nothing may come between these lines.
-        latency_s = recorder.wall_s()
+        latency_s = time.perf_counter() - started
         gc.enable()
         self._ask = self._replanner.update
         self._note(_judged(known, query, plan, reason, robot.time, changed, latency_s))
@@ -319,11 +323,10 @@ def _judged(
     latency_s: float,
 ) -> Replan:
     """What a plan is worth: a path only if the static referee finds it free in what is known."""
-    if not isinstance(plan, Plan):
-        plan, reason = Plan(PlanStatus.ERROR), f"returned {type(plan).__name__}, not a Plan."
+    plan, reason = _formed(plan, reason)
     status = plan.status
     path = None
-    if status is PlanStatus.SOLVED:
+    if status == PlanStatus.SOLVED:
         verdict = judge(known, query, plan.path)
         if verdict.valid:
             path = np.array(plan.path, dtype=np.float64)
@@ -344,6 +347,18 @@ def _judged(
         checks=plan.checks,
         details={str(name): float(value) for name, value in plan.details.items()},
     )
+
+
+def _formed(plan: Any, reason: str | None) -> tuple[Plan, str | None]:
+    """A plan whose counts are plain numbers, and what is wrong if it was none."""
+    if not isinstance(plan, Plan):
+        return Plan(PlanStatus.ERROR), f"returned {type(plan).__name__}, not a Plan."
+    try:
+        generations = as_count(plan.generations, "generations of the plan")
+        checks = as_count(plan.checks, "checks of the plan")
+    except ContractError as error:
+        return Plan(PlanStatus.ERROR), str(error)
+    return replace(plan, generations=generations, checks=checks), reason
 
 
 def _joining(place: NDArray[np.float64], pending: _Pending) -> list[NDArray[np.float64]]:

@@ -22,6 +22,7 @@ from suite.harness.prepared import (
 from suite.harness.simulated import simulated
 from suite.planner import Plan, PlanStatus, Recorder
 from suite.record import Cell, RunRecord
+from suite.reported import as_count, improvements, trace
 from suite.scene import Query, scene_fingerprint
 
 TRACEBACK_LINES = 12
@@ -100,6 +101,7 @@ def _run(
     if cell.world is not None:
         return simulated(blank, planner, rng)
     recorder.start_clock()
+    started = recorder.started
     plan = planner.plan(scene, query, cell.budget, rng, recorder)
     # The one clock stops here: nothing may come between these lines.
     wall_s, cpu_s = recorder.wall_s(), recorder.cpu_s()
@@ -108,14 +110,17 @@ def _run(
         wall_s=wall_s,
         cpu_s=cpu_s,
         contended=wall_s > CONTENTION_FACTOR * cpu_s + CONTENTION_FLOOR_S,
-        improvements=tuple(recorder.improvements),
-        trace=tuple(recorder.trace),
         optimum=exact_optimum(cell.scene_source, cell.query),
     )
     try:
         # Arrays are read-only, but numpy lets their owner change that.
         if scene_fingerprint(scene, query) != cell.scene_hash:
             raise ContractError("plan changed the start or the goal in place.")
+        if recorder.started != started:
+            raise ContractError("plan started the clock anew. That is for the harness to do.")
+        measured = replace(
+            measured, improvements=improvements(recorder, wall_s), trace=trace(recorder)
+        )
         return _judged(query, _with_plan(measured, _checked(plan)), plan)
     except ContractError as error:
         return replace(measured, reason=str(error))
@@ -137,11 +142,14 @@ def _with_plan(record: RunRecord, plan: Plan) -> RunRecord:
         record,
         status=PlanStatus(plan.status),
         claimed_cost=_number(plan.claimed_cost),
-        generations=_count(plan.generations),
-        generation_of_best=_count(
-            plan.generation_of_best, None if best is None else best.generation
+        generations=as_count(plan.generations, "generations of the plan"),
+        generation_of_best=as_count(
+            best.generation
+            if plan.generation_of_best is None and best is not None
+            else plan.generation_of_best,
+            "generation_of_best of the plan",
         ),
-        checks=_count(plan.checks),
+        checks=as_count(plan.checks, "checks of the plan"),
         details={str(k): float(v) for k, v in plan.details.items()},
         path=_as_path(plan.path),
         # A planner that reports nothing found its best when it ended.
@@ -183,10 +191,6 @@ def _gap(cost: float, optimum: float | None) -> float | None:
 
 def _number(value: Any) -> float | None:
     return None if value is None else float(value)
-
-
-def _count(value: Any, otherwise: int | None = None) -> int | None:
-    return otherwise if value is None else int(value)
 
 
 def _as_path(path: Any) -> NDArray[np.float64] | None:

@@ -157,7 +157,15 @@ def test_a_path_that_the_referee_rejects_is_none():
     assert done.trajectory.length == 0.0
 
 
-@pytest.mark.parametrize("answer", [fail, lambda *_: None], ids=["raises", "returns nothing"])
+def count_oddly(*_):
+    return Plan(PlanStatus.EXHAUSTED, checks=float("nan"))
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [fail, lambda *_: None, count_oddly],
+    ids=["raises", "returns nothing", "counts NaN checks"],
+)
 def test_a_planner_that_fails_is_an_update_without_a_path(answer):
     done = run(replanner=Scripted(over(), answer))
     assert done.reached

@@ -22,7 +22,7 @@ import psutil
 import shapely
 
 from suite.exact import shortest_path
-from suite.planner import Plan, Planner, PlanStatus
+from suite.planner import Improvement, Plan, Planner, PlanStatus
 from suite.scene import make_scene
 
 
@@ -532,6 +532,70 @@ class EatsInWarmUp(_Base):
 
     def warm_up(self):
         _eat()
+
+
+class ReportsAsNumpyDoes(_Base):
+    """Hands over what sums and means of arrays are: other types, and NaN before the first path."""
+
+    name = "reports-as-numpy-does"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        recorder.describe_generation({"best": np.inf, "mean": np.float32("nan"), "n": np.int64(1)})
+        recorder.improved(np.float32(50.0), generation=np.int64(1), checks=np.int32(2))
+        count = np.int64(3)
+        return Plan(PlanStatus.SOLVED, self.path(scene, query), None, count, count, count)
+
+
+class ReportsNan(_Base):
+    name = "reports-nan"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        recorder.improved(float("nan"))
+        return Plan(PlanStatus.SOLVED, self.path(scene, query))
+
+
+class DescribesInWords(_Base):
+    name = "describes-in-words"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        recorder.describe_generation({"phase": "repair"})
+        return Plan(PlanStatus.SOLVED, self.path(scene, query))
+
+
+class Backdates(_Base):
+    """Writes its improvements itself, from before the run."""
+
+    name = "backdates"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        recorder.improvements.append(Improvement(-1.0, 0.0, 50.0, None, None))
+        return Plan(PlanStatus.SOLVED, self.path(scene, query))
+
+
+class RestartsTheClock(_Base):
+    """Begins to count when its preparations are over."""
+
+    name = "restarts-the-clock"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        recorder.start_clock()
+        return Plan(PlanStatus.SOLVED, self.path(scene, query))
+
+
+class CountsBeyondMeasure(_Base):
+    name = "counts-beyond-measure"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        return Plan(PlanStatus.SOLVED, self.path(scene, query), checks=10**30)
+
+
+class SaysHalfACharacter(_Base):
+    """Names a file whose name is not text."""
+
+    name = "says-half-a-character"
+
+    def misbehave(self):
+        raise RuntimeError(os.fsdecode(b"no \xff file"))
 
 
 class WrongSignature(_Base):

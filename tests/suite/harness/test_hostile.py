@@ -5,10 +5,11 @@ import pytest
 
 from suite.harness.matrix import load_matrix
 from suite.harness.run import run_matrix
-from suite.store import open_store, read_runs
+from suite.store import open_store, read_events, read_first_measures, read_runs, read_traces
 
 # variant: how its run must end, and what its row must say.
 WANTED = {
+    "backdates": ("error", "reported improvements: a time of -1 s in a run"),
     "changes-obstacles": ("error", "FrozenInstanceError"),
     "changes-signals": ("solved", None),
     "changes-the-scene": ("error", "read-only"),
@@ -16,10 +17,12 @@ WANTED = {
     "cheats": ("invalid", "enters obstacle 1"),
     "closes-descriptors": ("crashed", "the process ended with exit code"),
     "comes-back-twice": ("solved", None),
+    "counts-beyond-measure": ("error", "checks of the plan is 1000000"),
     "daemonizes": ("solved", None),
     "daemonizes-and-dies": ("crashed", "SIGSEGV"),
     "daemonizes-and-hangs": ("timed_out", "plan took more than 1 s and was killed."),
     "daemonizes-in-warm-up": ("solved", None),
+    "describes-in-words": ("error", "the measure 'phase' is 'repair'"),
     "eats-all-memory": ("out_of_memory", "above 600 MB, and was killed."),
     "eats-memory": ("out_of_memory", "MemoryError"),
     "exits": ("crashed", "exit code 3"),
@@ -40,10 +43,14 @@ WANTED = {
     "prints-into-pipes": ("error", "wrote into the pipe"),
     "raises": ("error", "RuntimeError: no luck today"),
     "raises-base-exception": ("error", "GeneratorExit"),
+    "reports-as-numpy-does": ("solved", None),
+    "reports-nan": ("error", "reported improvements: a cost of nan m"),
+    "restarts-the-clock": ("error", "plan started the clock anew"),
     "returns-a-generator": ("invalid", "not a path"),
     "returns-a-wrong-shape": ("invalid", "(4, 3)"),
     "returns-nan": ("invalid", "must be finite"),
     "returns-none": ("error", "plan returned NoneType"),
+    "says-half-a-character": ("error", "RuntimeError: no ? file"),
     "segfaults": ("crashed", "SIGSEGV"),
     "system-exits": ("error", "SystemExit: 3"),
     "visibility-graph": ("solved", None),
@@ -65,6 +72,11 @@ def rows(hostile, wall_file, tmp_path):
     file.write_text(f'scenes = ["{wall_file}"]\nseeds = 1\n{LIMITS}{planners}')
     with open_store(store) as opened:
         run_matrix(load_matrix(file), opened, jobs=2)
+    # What one of them reports must not keep anybody from reading what the others did.
+    read_first_measures(store)
+    read_traces(store)
+    counts = read_events(store)[["generation", "checks"]].dropna()
+    assert counts.to_numpy().tolist() == [[1, 2]]
     return read_runs(store).set_index("variant")
 
 
