@@ -14,7 +14,7 @@ installed: a rule that does not apply raises ``unittest.SkipTest``, which pytest
 
 import unittest
 import warnings
-from collections.abc import Callable, Hashable
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, ClassVar
 
@@ -49,6 +49,7 @@ def judge(result: Result) -> None:
     unittest.SkipTest
         If it does not apply.
     """
+    __tracebackhide__ = True
     if result.kind is Kind.NOT_APPLICABLE:
         raise unittest.SkipTest(result.reason or result.rule)
     if result.finding is None:
@@ -63,14 +64,15 @@ def judge(result: Result) -> None:
 
 
 @lru_cache(maxsize=4)
-def _subject(planner: type[Planner], settings: Hashable) -> Subject:
+def _subject(contract: Any) -> Subject:
     """One for all tests of a class: they share its runs."""
-    return Subject(planner, settings)
+    return Subject(contract.planner, contract.settings)
 
 
 def _as_test(rule: Rule) -> Callable[[PlannerContract], None]:
     def test(self: PlannerContract) -> None:
-        judge(apply(rule, _subject(self.planner, self.settings)))
+        __tracebackhide__ = True  # pytest: the planner is at fault, not these lines
+        judge(apply(rule, _subject(type(self))))
 
     test.__name__ = f"test_{rule.__name__}"
     test.__qualname__ = f"{PlannerContract.__name__}.{test.__name__}"

@@ -3,6 +3,7 @@
 import dataclasses
 import pickle
 import re
+from collections.abc import Set
 from typing import Any
 
 from suite.conformance.finding import Finding, NotApplicable
@@ -43,11 +44,15 @@ def name_is_well_formed(subject: Subject) -> Outcome:
 def abilities_are_known(subject: Subject) -> Outcome:
     """The budgets that it says it keeps are budgets."""
     known = {field.name for field in dataclasses.fields(Budget)}
-    unknown = sorted(set(subject.planner_class.abilities.budgets) - known)
-    if not unknown:
+    budgets: Any = subject.planner_class.abilities.budgets
+    if not isinstance(budgets, Set):
+        found = f"abilities.budgets is {budgets!r}"
+    elif budgets <= known:
         return None
+    else:
+        found = f"abilities.budgets has {', '.join(sorted(map(repr, budgets - known)))}"
     return Finding(
-        f"abilities.budgets has {', '.join(map(repr, unknown))}",
+        found,
         f"a frozenset of some of {', '.join(sorted(known))}",
         "Name there the fields of suite.planner.Budget that plan obeys, and nothing else.",
     )
@@ -67,8 +72,10 @@ def settings_are_frozen(subject: Subject) -> Outcome:
 
 def settings_come_back(subject: Subject) -> Outcome:
     """Its settings survive the way through a matrix and a row: plain data that make them again."""
-    settings = subject.build().settings
-    told = settings_as_dict(settings)
+    given = subject.settings or subject.planner_class.Settings()
+    settings, told = subject.planner_class(given).settings, settings_as_dict(given)
+    if told and settings is not given:
+        return _lost(told, "the planner's own are others, whatever it is built with")
     try:
         made = make_settings(subject.planner_class, told)
     except PluginError as error:

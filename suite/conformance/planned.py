@@ -1,14 +1,16 @@
 """Rules about what a run returns and reports, looked at in an ordinary run on each small scene."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
 
 from suite.conformance.finding import Finding, NotApplicable
 from suite.conformance.subject import Subject, Trial, form_of, optimum, times
+from suite.errors import ContractError
 from suite.geometry.tolerances import COST_CLAIM_RELATIVE
 from suite.planner import Improvement, PlanStatus
+from suite.reported import improvements, trace
 
 Outcome = Finding | NotApplicable | None
 
@@ -18,15 +20,14 @@ MORE = (10, 100)
 
 def warms_up(subject: Subject) -> Outcome:
     """A planner can be built, and its warm_up ends and raises nothing."""
-    try:
-        subject.build().warm_up()
-    except (Exception, SystemExit) as error:  # other people's code: it may raise anything
-        return Finding(
-            f"{type(error).__name__}: {error}",
-            "a planner that is built from its settings, and a warm_up that returns",
-            "warm_up takes nothing: plan in a tiny scene of your own there, or leave it out.",
-        )
-    return None
+    error = subject.warm_up.error
+    if error is None:
+        return None
+    return Finding(
+        error,
+        "a planner that is built from its settings, and a warm_up that returns",
+        "warm_up takes nothing: plan in a tiny scene of your own there, or leave it out.",
+    )
 
 
 def runs_end_without_an_exception(subject: Subject) -> Outcome:
@@ -55,6 +56,21 @@ def refuses_with_a_reason(subject: Subject) -> Outcome:
             f"{trial.label}: refuse returned {said!r}",
             "None if it can, else a sentence that says why it can't",
             "Return the reason as text: it stands in the row, for people to read.",
+        )
+
+    return _first(subject, judge)
+
+
+def refuse_prepares_nothing(subject: Subject) -> Outcome:
+    """What refuse finds out is not kept for plan: it is called outside the clock."""
+
+    def judge(trial: Trial) -> Finding | None:
+        if not trial.run.prepared:
+            return None
+        return Finding(
+            f"{trial.label}: refuse set {', '.join(f'self.{name}' for name in trial.run.prepared)}",
+            "a planner that is the same after refuse as before",
+            "Do in plan what takes time and is needed there, even if refuse has done it already.",
         )
 
     return _first(subject, judge)
@@ -195,13 +211,11 @@ def _finding_of_exactness(trial: Trial) -> Finding | None:
 
 def improvements_agree_with_the_result(subject: Subject) -> Outcome:
     """What it reports while it runs gets better, and the last of it is what it returns."""
-    return _first(
-        subject, lambda trial: _finding_of_reports(trial, trial.run.recorder.improvements)
-    )
+    return _first(subject, _finding_of_reports)
 
 
-def _finding_of_reports(trial: Trial, reports: list[Improvement]) -> Finding | None:
-    wrong = _disorder(reports) or _disagreement(trial, reports)
+def _finding_of_reports(trial: Trial) -> Finding | None:
+    wrong = None if _has_not_run(trial) or trial.run.restarted else _wrong_report(trial)
     if wrong is None:
         return None
     return Finding(
@@ -213,11 +227,16 @@ def _finding_of_reports(trial: Trial, reports: list[Improvement]) -> Finding | N
     )
 
 
-def _disorder(reports: list[Improvement]) -> str | None:
-    """What is wrong with reports by themselves. Costs fall: the recorder ignores all others."""
-    for report in reports:
-        if not (np.isfinite(report.cost) and report.cost >= 0.0):
-            return f"a cost of {report.cost} m was reported"
+def _wrong_report(trial: Trial) -> str | None:
+    try:
+        trace(trial.run.recorder)
+        reports = improvements(trial.run.recorder, trial.run.wall_s)
+    except ContractError as error:
+        return str(error)
+    return _falling_counts(reports) or _disagreement(trial, reports)
+
+
+def _falling_counts(reports: Sequence[Improvement]) -> str | None:
     for name in ("generation", "checks"):
         counts = [c for r in reports if (c := getattr(r, name)) is not None]
         for before, after in pairwise(counts):
@@ -226,16 +245,19 @@ def _disorder(reports: list[Improvement]) -> str | None:
     return None
 
 
-def _disagreement(trial: Trial, reports: list[Improvement]) -> str | None:
+def _disagreement(trial: Trial, reports: Sequence[Improvement]) -> str | None:
     """What is wrong with reports beside the plan."""
     if not reports or trial.plan is None:
         return None
     last, length = reports[-1].cost, trial.length
     if trial.plan.status != PlanStatus.SOLVED:
         return f"{last:.9g} m were reported, and the run ends as '{trial.plan.status}'"
-    if length is None or abs(last - length) <= _allowed(length):
-        return None
-    return f"the best reported cost is {last:.9g} m, and the returned path has {length:.9g} m"
+    if length is not None and abs(last - length) > _allowed(length):
+        return f"the best reported cost is {last:.9g} m, and the returned path has {length:.9g} m"
+    told, best = reports[-1].generation, trial.plan.generation_of_best
+    if told is not None and best is not None and told != best:
+        return f"the best was reported in generation {told}, and generation_of_best is {best}"
+    return None
 
 
 def anytime_reports(subject: Subject) -> Outcome:

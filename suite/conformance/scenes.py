@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import shapely
 
-from suite.scene import Scene, make_scene
+from suite.scene import Query, Scene, make_scene
 from suite.scenes.scattered import scattered
 
 ROOM = shapely.box(0, 0, 10, 10)
@@ -30,6 +30,11 @@ class SmallScene:
     is_trivial: bool = False
 
 
+def asked(scene: Scene) -> Query:
+    """The query of a small scene that is asked: the last, so not always the scene's first."""
+    return scene.queries[-1]
+
+
 def small_scenes() -> tuple[SmallScene, ...]:
     """All scenes of the kit.
 
@@ -43,6 +48,7 @@ def small_scenes() -> tuple[SmallScene, ...]:
         SmallScene("start equals goal", _start_equals_goal, is_trivial=True),
         SmallScene("start sees goal", _start_sees_goal, is_trivial=True),
         SmallScene("one wall", _one_wall),
+        SmallScene("two queries", _two_queries),
         SmallScene("narrow gap", _narrow_gap),
         SmallScene("touching obstacles", _touching_obstacles),
         SmallScene("start on an edge", _start_on_an_edge),
@@ -66,6 +72,11 @@ def _start_sees_goal() -> Scene:
 
 def _one_wall() -> Scene:
     return make_scene("one wall", ROOM, [shapely.box(4, 0, 6, 8)], (LEFT, RIGHT))
+
+
+def _two_queries() -> Scene:
+    queries = {"first": (LEFT, RIGHT), "second": ((1.1, 2.3), (9.3, 1.7))}
+    return make_scene("two queries", ROOM, [shapely.box(4, 0, 6, 8)], queries)
 
 
 def _narrow_gap() -> Scene:

@@ -4,20 +4,23 @@ A run here goes as in the harness: a planner is built and warmed up, may refuse,
 path is judged. The scene that it is given is its own: the judge has another.
 """
 
+import time
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
-from suite.conformance.scenes import SmallScene, small_scenes
+from suite.conformance.scenes import SmallScene, asked, small_scenes
 from suite.conformance.surroundings import Surroundings, fingerprint
+from suite.errors import ContractError
 from suite.exact import shortest_path
 from suite.global_generators import seed_globals
 from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder
 from suite.referee import Referee, Verdict
+from suite.reported import as_count
 from suite.scene import Scene
 
 CLAIMABLE = (PlanStatus.SOLVED, PlanStatus.INFEASIBLE, PlanStatus.EXHAUSTED)
@@ -43,6 +46,8 @@ class Run:
     returned : what ``plan`` returned; None if it was not called.
     error : the end of the traceback, if anything raised.
     wall_s : what ``plan`` took, seconds.
+    prepared : attributes of the planner that ``refuse`` has set.
+    restarted : whether ``plan`` set the recorder's clock to zero.
     """
 
     recorder: Recorder
@@ -50,6 +55,21 @@ class Run:
     returned: Any = None
     error: str | None = None
     wall_s: float = 0.0
+    prepared: tuple[str, ...] = ()
+    restarted: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WarmUp:
+    """The first warm-up of a planner: whatever is imported or compiled but once comes here.
+
+    error : what it raised; None if it ended well.
+    before, after : the process around it.
+    """
+
+    error: str | None
+    before: Surroundings
+    after: Surroundings
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +113,7 @@ class Trial:
         """Whether the path starts and ends where it should."""
         if self.plan is None or self.plan.path is None:
             return False
-        query = _pristine(self.scene).query()
+        query = asked(_pristine(self.scene))
         ends = np.asarray(self.plan.path, dtype=np.float64)[[0, -1]]
         return bool(np.array_equal(ends, np.array([query.start, query.goal])))
 
@@ -103,7 +123,7 @@ class Trial:
         plan = self.plan
         if plan is None or plan.status != PlanStatus.SOLVED or not self.ends:
             return None
-        return _referee(self.scene).judge(_pristine(self.scene).query(), plan.path)
+        return _referee(self.scene).judge(asked(_pristine(self.scene)), plan.path)
 
     @property
     def length(self) -> float | None:
@@ -163,6 +183,18 @@ class Subject:
         return self.ordinary.wall_s is not None
 
     @cached_property
+    def warm_up(self) -> WarmUp:
+        """The first one, of a new planner."""
+        before, error = Surroundings.now(), None
+        try:
+            self.build().warm_up()
+        except (Exception, SystemExit) as raised:  # other people's code: it may raise anything
+            error = f"{type(raised).__name__}: {raised}"
+        after = Surroundings.now()
+        before.restore()
+        return WarmUp(error, before, after)
+
+    @cached_property
     def trials(self) -> tuple[Trial, ...]:
         """An ordinary run on each small scene."""
         return tuple(self.trial(scene) for scene in small_scenes())
@@ -184,9 +216,9 @@ class Subject:
         given = _lent.get(scene.name) or _lent.setdefault(scene.name, scene.build())
         outer, stream = Surroundings.now(), str(rng.bit_generator.state)
         seed_globals(seed)
-        before, drawn = Surroundings.now(), fingerprint(given, given.query())
+        before, drawn = Surroundings.now(), fingerprint(given, asked(given))
         run = _run(self.build if planner is None else lambda: planner, given, budget, rng)
-        after, changed = Surroundings.now(), fingerprint(given, given.query()) != drawn
+        after, changed = Surroundings.now(), fingerprint(given, asked(given)) != drawn
         outer.restore()
         if changed:
             del _lent[scene.name]
@@ -198,16 +230,21 @@ def _run(
     build: Callable[[], Planner], scene: Scene, budget: Budget, rng: np.random.Generator
 ) -> Run:
     """Do what the harness does with a planner, and take whatever comes of it."""
-    query, recorder = scene.query(), Recorder()
+    query, recorder = asked(scene), Recorder()
     try:
         planner = build()
         planner.warm_up()
+        had = dict(vars(planner))
         refusal = planner.refuse(scene, query, budget)
+        prepared = tuple(k for k, v in vars(planner).items() if k not in had or v is not had[k])
         if refusal is not None:
-            return Run(recorder, refusal=refusal)
+            return Run(recorder, refusal=refusal, prepared=prepared)
         recorder.start_clock()
+        started = recorder.started
         returned = planner.plan(scene, query, budget, rng, recorder)
-        return Run(recorder, returned=returned, wall_s=recorder.wall_s())
+        wall_s = time.perf_counter() - started
+        restarted = recorder.started != started
+        return Run(recorder, None, returned, None, wall_s, prepared, restarted)
     except (Exception, SystemExit):  # other people's code: it may raise anything
         lines = traceback.format_exc().strip().splitlines()[-TRACEBACK_LINES:]
         return Run(recorder, error="\n".join(lines))
@@ -219,10 +256,15 @@ def form_of(returned: Any) -> str | None:
         return f"plan returned {type(returned).__name__}"
     if returned.status not in CLAIMABLE:
         return f"the status of the plan is {returned.status!r}"
-    for name in ("claimed_cost", "generations", "generation_of_best", "checks"):
-        value = getattr(returned, name)
-        if value is not None and not isinstance(value, int | float | np.number):
-            return f"{name} of the plan is a {type(value).__name__}"
+    try:
+        for name in ("generations", "generation_of_best", "checks"):
+            as_count(getattr(returned, name), f"{name} of the plan")
+    except ContractError as error:
+        return str(error)
+    if not isinstance(returned.claimed_cost, int | float | np.number | None):
+        return f"claimed_cost of the plan is a {type(returned.claimed_cost).__name__}"
+    if not isinstance(returned.details, Mapping):
+        return f"details of the plan are a {type(returned.details).__name__}, not a mapping"
     if not all(isinstance(value, int | float | np.number) for value in returned.details.values()):
         return f"details of the plan are {returned.details!r}, which are not all numbers"
     if returned.path is None:
@@ -245,7 +287,7 @@ def times(budget: Budget, factor: int) -> Budget:
 def optimum(scene: SmallScene) -> float:
     """Length of the shortest path, metres; infinite without a path."""
     given = _pristine(scene)
-    return shortest_path(given, given.query()).length
+    return shortest_path(given, asked(given)).length
 
 
 def run_in_words(scene: SmallScene, seed: int, budget: Budget) -> str:

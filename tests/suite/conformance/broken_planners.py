@@ -146,6 +146,15 @@ class LostSettings:
         object.__setattr__(self, "tries", self.tries + 1)
 
 
+class DropsItsSettings(Detours):
+    """settings-come-back"""
+
+    name = "drops-its-settings"
+
+    def __init__(self, settings=None):
+        super().__init__()
+
+
 class SettingsGetLost(Detours):
     """settings-come-back"""
 
@@ -189,6 +198,42 @@ class RefusesWithoutAReason(Detours):
 
     def refuse(self, scene, query, budget):
         return False
+
+
+class PlansInRefuse(Detours):
+    """refuse-prepares-nothing"""
+
+    name = "plans-in-refuse"
+
+    def refuse(self, scene, query, budget):
+        self.shortest = shortest_path(scene, query)
+
+
+class PlansTheFirstQuery(Detours):
+    """path-has-the-right-ends"""
+
+    name = "plans-the-first-query"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        return super().plan(scene, scene.query(), budget, rng, recorder)
+
+
+class HasNoDetails(ChangesTheResult):
+    """returns-a-plan"""
+
+    name = "has-no-details"
+
+    def spoilt(self, plan, scene, query):
+        return replace(plan, details=None)
+
+
+class CountsBelowZero(ChangesTheResult):
+    """returns-a-plan"""
+
+    name = "counts-below-zero"
+
+    def spoilt(self, plan, scene, query):
+        return replace(plan, checks=-1)
 
 
 class ReturnsAPath(ChangesTheResult):
@@ -296,6 +341,40 @@ class CountsBackwards(Detours):
         return super().plan(scene, query, budget, rng, recorder)
 
 
+class FindsItsBestInGenerationZero(ChangesTheResult):
+    """improvements-agree-with-the-result"""
+
+    name = "finds-its-best-in-generation-zero"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        shortest = shortest_path(scene, query).path
+        if shortest is None:
+            return Plan(PlanStatus.EXHAUSTED, generations=0, checks=0)
+        recorder.improved(path_length(shortest), generation=2, checks=int(rng.integers(100)))
+        return Plan(PlanStatus.SOLVED, shortest, None, 3, 0, 100)
+
+
+class Backdates(Detours):
+    """improvements-agree-with-the-result"""
+
+    name = "backdates"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        plan = super().plan(scene, query, budget, rng, recorder)
+        recorder.improvements[:] = [replace(i, wall_s=-1.0) for i in recorder.improvements]
+        return plan
+
+
+class DescribesInWords(Detours):
+    """improvements-agree-with-the-result"""
+
+    name = "describes-in-words"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        recorder.describe_generation({"phase": "repair"})
+        return super().plan(scene, query, budget, rng, recorder)
+
+
 class NeverReports(Detours):
     """anytime-reports"""
 
@@ -349,6 +428,26 @@ class ChangesTheFolder(DoesSomethingElse):
         os.chdir("/")
 
 
+class WarmsUpElsewhere(Detours):
+    """leaves-the-folder-alone"""
+
+    name = "warms-up-elsewhere"
+
+    def warm_up(self):
+        super().warm_up()
+        os.chdir("/")
+
+
+class RestartsTheClock(Detours):
+    """leaves-the-clock-alone"""
+
+    name = "restarts-the-clock"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        recorder.start_clock()
+        return super().plan(scene, query, budget, rng, recorder)
+
+
 class ChangesTheEnvironment(DoesSomethingElse):
     """leaves-the-environment-alone"""
 
@@ -380,6 +479,16 @@ class AlwaysTheSameSeed(Detours):
         return super().plan(scene, query, budget, np.random.default_rng(0), recorder)
 
 
+class TwoStreams(Detours):
+    """another-seed-another-stream"""
+
+    name = "two-streams"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        own = np.random.default_rng(int(rng.integers(2)))
+        return super().plan(scene, query, budget, own, recorder)
+
+
 class NotDeterministic(Detours):
     """another-seed-another-stream"""
 
@@ -399,6 +508,19 @@ class Remembers(Detours):
     def plan(self, scene, query, budget, rng, recorder):
         self.runs += 1
         rng.random(self.runs)
+        return super().plan(scene, query, budget, rng, recorder)
+
+
+class Learns(Detours):
+    """keeps-no-state"""
+
+    name = "learns"
+    known: ClassVar = set()
+
+    def plan(self, scene, query, budget, rng, recorder):
+        if scene.name in self.known:
+            rng.random(7)
+        self.known.add(scene.name)
         return super().plan(scene, query, budget, rng, recorder)
 
 
@@ -441,6 +563,27 @@ class IgnoresTheClock(Detours):
     def plan(self, scene, query, budget, rng, recorder):
         if budget.wall_s is not None:
             time.sleep(1.0)
+        return super().plan(scene, query, budget, rng, recorder)
+
+
+class LooksAtOneBudgetOnly(Detours):
+    """keeps-generations"""
+
+    name = "looks-at-one-budget-only"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        if budget.wall_s is not None:
+            budget = replace(budget, generations=None)
+        return super().plan(scene, query, budget, rng, recorder)
+
+
+class NeedsTwoGenerations(Detours):
+    """ends-or-refuses-whatever-the-budget"""
+
+    name = "needs-two-generations"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        _ = 1.0 / ((budget.generations or 2) - 1)
         return super().plan(scene, query, budget, rng, recorder)
 
 

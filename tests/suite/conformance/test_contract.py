@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import textwrap
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,21 @@ ROOT = Path(__file__).parents[3]
 class TestDetours(PlannerContract):
     planner = Detours
     settings = DetourSettings(tries=20)
+
+
+@dataclass(frozen=True)
+class WeightedSettings(DetourSettings):
+    weights: list[float] = field(default_factory=lambda: [1.0, 2.0])
+
+
+class Weighted(Detours):
+    name = "weighted"
+    Settings = WeightedSettings
+
+
+class TestSettingsThatHoldAList(PlannerContract):
+    planner = Weighted
+    settings = WeightedSettings(tries=20)
 
 
 def test_each_rule_is_a_test_that_says_what_it_asks():
@@ -53,15 +69,16 @@ def outcomes(tmp_path):
 
 def test_an_author_sees_the_broken_rule_and_how_to_mend_it(outcomes):
     printed = outcomes("ChangesTheFolder")
-    assert "1 failed, 28 passed, 1 skipped" in printed
+    assert "1 failed, 30 passed, 1 skipped" in printed
     assert "FAILED" in printed
     assert "test_leaves_the_folder_alone" in printed
     assert "mend: Use whole paths" in printed
+    assert "raise AssertionError" not in printed  # the lines of the kit say nothing to an author
 
 
 def test_an_author_sees_a_warning_and_the_test_passes(outcomes):
     printed = outcomes("ClaimsALowerCost")
-    assert "29 passed, 1 skipped" in printed
+    assert "31 passed, 1 skipped" in printed
     assert "ContractWarning: claimed-cost-is-the-length" in printed
 
 
