@@ -1,8 +1,13 @@
-"""Nothing on the terminal after the last word: compiled libraries complain as the process ends."""
+"""What planners and libraries print is kept out of what a command says.
+
+Compiled libraries complain as the process ends: nothing is to follow the last word.
+"""
 
 import atexit
+import contextlib
 import os
 import sys
+from collections.abc import Iterator
 
 
 def end_quietly() -> None:
@@ -12,6 +17,27 @@ def end_quietly() -> None:
     that no setting turns off. Errors of the program itself are written before.
     """
     atexit.register(_drop_standard_error)
+
+
+@contextlib.contextmanager
+def print_aside() -> Iterator[None]:
+    """Let what is printed meanwhile go to standard error: standard output is the command's.
+
+    Of the process, not only of Python's ``print``; whatever was put in the place of ``sys.stdout``
+    is taken away afterwards.
+    """
+    mine = sys.stdout
+    mine.flush()
+    kept = os.dup(1)
+    os.dup2(2, 1)
+    sys.stdout = sys.stderr
+    try:
+        yield
+    finally:
+        sys.stdout = mine
+        mine.flush()  # what was printed by whoever had taken hold of it before
+        os.dup2(kept, 1)
+        os.close(kept)
 
 
 def _drop_standard_error() -> None:

@@ -25,6 +25,7 @@ from suite.commands.options import (
     use_plugins,
 )
 from suite.commands.output import print_json
+from suite.quiet import print_aside
 
 
 class Charge(StrEnum):
@@ -71,13 +72,15 @@ def plan(
     # Of the first population only: more would slow down the run that is timed.
     recorder = Recorder(snapshot_of=lambda generation: plot is not None and generation == 0)
     if plot is None:
-        record = run_cell(cell, recorder=recorder)
+        with print_aside():
+            record = run_cell(cell, recorder=recorder)
     else:
         from suite.report.figures import check_figure_file
         from suite.report.run_figure import draw_record
 
         check_figure_file(plot)
-        record = run_cell(cell, recorder=recorder)
+        with print_aside():
+            record = run_cell(cell, recorder=recorder)
         draw_record(record, recorder.snapshots, plot)
     if style is TextFormat.JSON:
         print_json(as_data(record))
@@ -216,7 +219,8 @@ def simulate(
         budget=Budget(wall_s, generations, checks),
         world=world_for(scene, overrides, cold=cold),
     )
-    record = run_cell(cell)
+    with print_aside():
+        record = run_cell(cell)
     done = simulation_of(record) if plot is not None or animate is not None else None
     if done is not None and plot is not None:
         from suite.report.dynamic_figures import plot_snapshots

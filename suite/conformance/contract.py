@@ -64,7 +64,7 @@ def judge(result: Result) -> None:
 
 
 @lru_cache(maxsize=4)
-def _subject(contract: Any) -> Subject:
+def _subject(contract: type[PlannerContract]) -> Subject:
     """One for all tests of a class: they share its runs."""
     return Subject(contract.planner, contract.settings)
 
@@ -72,7 +72,8 @@ def _subject(contract: Any) -> Subject:
 def _as_test(rule: Rule) -> Callable[[PlannerContract], None]:
     def test(self: PlannerContract) -> None:
         __tracebackhide__ = True  # pytest: the planner is at fault, not these lines
-        judge(apply(rule, _subject(type(self))))
+        contract: Any = type(self)
+        judge(apply(rule, _subject(contract)))
 
     test.__name__ = f"test_{rule.__name__}"
     test.__qualname__ = f"{PlannerContract.__name__}.{test.__name__}"

@@ -251,6 +251,13 @@ def test_plan_says_all_in_json(kbga_bench, hostile, wall_file):
     assert found["path"][0] == [1, 3]
 
 
+def test_what_a_planner_prints_is_no_part_of_the_json(hostile, wall_file):
+    planner = ("--planner", "takes-standard-output")
+    done = in_own_process("plan", wall_file, *planner, "--format", "json")
+    assert json.loads(done.out)["status"] == "solved"
+    assert "iteration 1\niteration 2" in done.err
+
+
 def test_plan_gives_the_same_path_in_two_processes(hostile, wall_file):
     arguments = ("plan", wall_file, "--planner", "wanderer", "--seed", 7, "--format", "json")
     first, second = (json.loads(in_own_process(*arguments).out) for _ in range(2))

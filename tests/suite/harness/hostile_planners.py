@@ -6,6 +6,7 @@ The fixture ``hostile`` makes a distribution of them, with metadata like any ins
 
 import ctypes
 import gc
+import io
 import os
 import random
 import signal
@@ -284,6 +285,17 @@ class Prints(_Base):
         for _ in range(100):
             os.write(1, b"x" * 1_000_000)
             os.write(2, b"y" * 1_000_000)
+
+
+class TakesStandardOutput(_Base):
+    """Prints as Python does and as C does, and then puts something else there."""
+
+    name = "takes-standard-output"
+
+    def misbehave(self):
+        print("iteration 1")  # noqa: T201
+        os.write(1, b"iteration 2\n")
+        sys.stdout = io.StringIO()
 
 
 class PrintsIntoPipes(_Base):
