@@ -16,7 +16,7 @@ from suite.conformance.scenes import SmallScene, small_scenes
 from suite.conformance.surroundings import Surroundings, fingerprint
 from suite.exact import shortest_path
 from suite.global_generators import seed_globals
-from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder
+from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder, refusal
 from suite.referee import Referee, Verdict
 from suite.scene import Scene
 
@@ -202,9 +202,9 @@ def _run(
     try:
         planner = build()
         planner.warm_up()
-        refusal = planner.refuse(scene, query, budget)
-        if refusal is not None:
-            return Run(recorder, refusal=refusal)
+        reason = refusal(planner, scene, query, budget)
+        if reason is not None:
+            return Run(recorder, refusal=reason)
         recorder.start_clock()
         returned = planner.plan(scene, query, budget, rng, recorder)
         return Run(recorder, returned=returned, wall_s=recorder.wall_s())
