@@ -89,7 +89,8 @@ def test_the_suite_that_runs_there_is_our_wheel(environment):
 def test_it_is_listed(environment):
     rows = json.loads(done(environment / "kbga-bench", "list", "planners", "--format", "json"))
     (row,) = [row for row in rows if row["name"] == "small-prm"]
-    assert (row["distribution"], row["version"], row["available"]) == ("small-prm", "1.0", True)
+    assert (row["distribution"], row["available"]) == ("small-prm", True)
+    assert row["version"].startswith("1.0 sha256-")
     assert {"kbga", "visibility-graph"} < {row["name"] for row in rows}
 
 
