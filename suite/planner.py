@@ -243,8 +243,10 @@ class Planner(ABC):
         Parameters
         ----------
         scene : Scene
-            Obstacles as shapely polygons (``scene.obstacles``) and as arrays for the collision
-            kernels (``scene.arrays``).
+            The room and its obstacles as shapely polygons (``scene.workspace``,
+            ``scene.obstacles[0].polygon``), its box (``scene.bounds``), and arrays for the
+            kernels: ``suite.geometry.kernels.first_collision(path, scene.arrays)`` is -1 if a
+            path is free, and otherwise the number of its first segment that is not.
         query : Query
             Start and goal, (2,) float64, metres.
         budget : Budget
