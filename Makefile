@@ -7,7 +7,14 @@ STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
 
-.PHONY: setup browser bench test test-slow torture lint perf harness results clean
+.PHONY: help setup browser bench test test-slow torture lint perf harness results clean
+
+help:
+	@echo "make bench     run the matrix paper-static and print its tables (ARGS=--quick: two seeds)"
+	@echo "make test      run the tests; test-slow, torture: the long ones; lint"
+	@echo "make setup     make .venv with the command kbga-bench; . .venv/bin/activate"
+	@echo "make results   remake results/: three quarters of an hour; results-NAME: one folder of it"
+	@echo "make perf, make harness   measure the planners' times, and what the harness costs"
 
 setup: $(STAMP)
 

@@ -244,8 +244,10 @@ class Planner(ABC):
         Parameters
         ----------
         scene : Scene
-            Obstacles as shapely polygons (``scene.obstacles``) and as arrays for the collision
-            kernels (``scene.arrays``).
+            The room and its obstacles as shapely polygons (``scene.workspace``,
+            ``scene.obstacles[0].polygon``), its box (``scene.bounds``), and arrays for the
+            kernels: ``suite.geometry.kernels.first_collision(path, scene.arrays)`` is -1 if a
+            path is free, and otherwise the number of its first segment that is not.
         query : Query
             Start and goal, (2,) float64, metres.
         budget : Budget
@@ -279,8 +281,32 @@ class Planner(ABC):
         query: Query,  # noqa: ARG002
         budget: Budget,  # noqa: ARG002
     ) -> str | None:
-        """A sentence that says why this planner can't do this run; None if it can."""
+        """A sentence that says why this planner can't do this run; None if it can.
+
+        Budgets need not be looked at: see :func:`refusal`.
+        """
         return None
+
+
+def refusal(planner: Planner, scene: Scene, query: Query, budget: Budget) -> str | None:
+    """Why a run is not begun, in a sentence; None if it is.
+
+    A planner is not asked where it keeps none of the limits that it is given: it would have more
+    than those beside it, and nobody would know. Wall time is watched by the harness.
+
+    Parameters
+    ----------
+    planner : Planner
+    scene, query, budget : as :meth:`Planner.plan` takes them.
+    """
+    counts = [name for name in ("generations", "checks") if getattr(budget, name) is not None]
+    kept = planner.abilities.budgets
+    if budget.wall_s is not None or not counts or kept.intersection(counts):
+        return planner.refuse(scene, query, budget)
+    instead = (
+        f"Give one that it keeps: {', '.join(sorted(kept))}" if kept else "It keeps none: give none"
+    )
+    return f"{planner.name} keeps no budget of {' or '.join(counts)}. {instead}."
 
 
 class Replanner(ABC):

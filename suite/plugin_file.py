@@ -2,8 +2,8 @@
 
 What is named in one process must be found in those that it starts, the fork server and its
 children. It is handed on by an environment variable, which they inherit. The version of such a
-planner is a hash of its file, so that changed code runs anew; modules that the file imports do not
-count. A file that changes while a matrix runs is refused from then on.
+planner is a hash of its code (:mod:`suite.plugin_code`), so that changed code runs anew. Code that
+changes while a matrix runs is refused from then on.
 """
 
 import hashlib
@@ -21,6 +21,7 @@ from typing import Any
 from suite.errors import PluginError
 from suite.planner import Planner
 from suite.plugin_class import flaw
+from suite.plugin_code import code_hash, files_beside, files_of_package
 
 VARIABLE = "KBGA_BENCH_PLUGINS"
 HOW = "Give path/to/file.py, path/to/file.py:Class, or module:Class."
@@ -57,7 +58,7 @@ class NamedPlugin:
         """
         place, _, kind = self.reference.rpartition(":")
         module = _imported(place, self.folder)
-        if _version(_file_of(module)) != self.version:
+        if _version(module) != self.version:
             raise PluginError(f"{place} changed since the command began. Give it again.")
         return getattr(module, kind)
 
@@ -98,7 +99,7 @@ def _resolved(reference: str) -> list[NamedPlugin]:
     folder = Path(place).parent if place.endswith(".py") else Path.cwd()
     try:
         module = _imported(place, str(folder))
-        version = _version(_file_of(module))
+        version = _version(module)
     except (Exception, SystemExit) as error:  # other people's code: its import may raise anything
         raise PluginError(f"--plugin {reference}: {type(error).__name__}: {error}") from error
     classes = _planners_of(module) if kind is None else [kind]
@@ -150,14 +151,13 @@ def _imported(place: str, folder: str) -> ModuleType:
     return module
 
 
-def _file_of(module: ModuleType) -> Path:
+def _version(module: ModuleType) -> str:
+    """Hash of a module with what it imports from beside it, or of the package that it is in."""
     if module.__file__ is None:
         raise PluginError(f"{module.__name__} is a folder without code. {HOW}")
-    return Path(module.__file__)
-
-
-def _version(file: Path) -> str:
-    return f"sha256-{hashlib.sha256(file.read_bytes()).hexdigest()[:12]}"
+    if module.__package__:
+        return code_hash(files_of_package(module.__package__))
+    return code_hash(files_beside(Path(module.__file__)))
 
 
 def _planners_of(module: ModuleType) -> list[str]:

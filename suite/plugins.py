@@ -23,6 +23,7 @@ from typing import Any
 from suite.errors import ContractError, PluginError
 from suite.planner import Abilities, Planner
 from suite.plugin_class import flaw
+from suite.plugin_code import OURS, code_hash, files_of_entry_point, module_of
 from suite.plugin_file import NamedPlugin, named_plugins
 
 GROUP = "kbga_bench.planners"
@@ -38,8 +39,8 @@ class PluginInfo:
     """One line of the list of installed planners.
 
     name : the word under which users ask for the planner.
-    distribution, version : of the package that declares it, or the file and a hash of its code;
-        several, with commas, if it is ambiguous.
+    distribution, version : of the package that declares it, with a hash of its code unless it is
+        kbga-bench; or the file and a hash of its code; several, with commas, if it is ambiguous.
     available : whether it can be loaded.
     reason : "unavailable: ..." and why; None if it is available.
     abilities : what it can do; None if it is not available.
@@ -206,7 +207,11 @@ def _distribution(source: Source) -> tuple[str, str]:
         return source.distribution, source.version
     if source.dist is None:
         return "unknown", "unknown"
-    return source.dist.name, source.dist.version
+    name, version = source.dist.name, source.dist.version
+    if module_of(source).split(".")[0] in OURS:
+        return name, version
+    # Whoever works on a plugin installs it again and again with one version.
+    return name, f"{version} {code_hash(files_of_entry_point(source))}"
 
 
 def _load(name: str, sources: Sequence[Source]) -> type[Planner]:

@@ -13,7 +13,7 @@ PACKAGES = ("suite", "kbga", "baselines")
 FLOORS = (
     {"compiled", "errors", "geometry", "global_generators", "quiet"},
     {"dynamics", "scene", "scene_file", "exact"},
-    {"planner", "plugin_class", "plugin_file", "plugins"},
+    {"planner", "plugin_class", "plugin_code", "plugin_file", "plugins"},
     {"scenes", "record", "referee", "reported"},
     {"conformance", "merge", "store"},
     {"harness", "dynamic", "report", "paper", "listing", "new_planner"},

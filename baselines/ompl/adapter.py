@@ -41,12 +41,6 @@ class OmplPlanner(Planner):
     def _run(self, problem: "Problem", recorder: Recorder) -> NDArray[np.float64] | None:
         """Run until the budget is spent, report improvements, and return the best path."""
 
-    def refuse(self, scene: Scene, query: Query, budget: Budget) -> str | None:  # noqa: ARG002
-        """Refuse a budget of generations alone: OMPL's planners have no common count of them."""
-        if budget.generations is None or budget.wall_s is not None or budget.checks is not None:
-            return None
-        return f"{self.name} can't be limited by generations. Give wall_s or checks."
-
     def warm_up(self) -> None:
         """Compile the kernel and load OMPL."""
         scene = tiny_scene()

@@ -18,7 +18,7 @@ from suite.conformance.surroundings import Surroundings, fingerprint
 from suite.errors import ContractError
 from suite.exact import shortest_path
 from suite.global_generators import seed_globals
-from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder
+from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder, refusal
 from suite.referee import Referee, Verdict
 from suite.reported import as_count
 from suite.scene import Scene
@@ -235,10 +235,10 @@ def _run(
         planner = build()
         planner.warm_up()
         had = dict(vars(planner))
-        refusal = planner.refuse(scene, query, budget)
+        reason = refusal(planner, scene, query, budget)
         prepared = tuple(k for k, v in vars(planner).items() if k not in had or v is not had[k])
-        if refusal is not None:
-            return Run(recorder, refusal=refusal, prepared=prepared)
+        if reason is not None:
+            return Run(recorder, refusal=reason, prepared=prepared)
         recorder.start_clock()
         started = recorder.started
         returned = planner.plan(scene, query, budget, rng, recorder)

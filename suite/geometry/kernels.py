@@ -366,11 +366,19 @@ def pinch_at(x: float, y: float, pinches: np.ndarray) -> int:
 def first_collision(path: np.ndarray, arrays: ObstacleArrays) -> int:
     """Index of the first segment of a path (n, 2) that leaves free space, or -1.
 
-    A bend at a pinch point that slips between its parts counts for the segment that arrives.
+    A bend at a pinch point that slips between its parts counts for the segment that arrives: only
+    a path that is checked as a whole, and not segment by segment, shows it.
+
+    Parameters
+    ----------
+    path : (n, 2) array of numbers, metres
+    arrays : ObstacleArrays
+        ``scene.arrays``.
     """
     for i in range(path.shape[0] - 1):
-        ax, ay = path[i, 0], path[i, 1]
-        bx, by = path[i + 1, 0], path[i + 1, 1]
+        # Plugins give whole numbers, and float32, too.
+        ax, ay = np.float64(path[i, 0]), np.float64(path[i, 1])
+        bx, by = np.float64(path[i + 1, 0]), np.float64(path[i + 1, 1])
         if segment_enters(ax, ay, bx, by, arrays):
             return i
         k = pinch_at(bx, by, arrays.pinches)
@@ -378,10 +386,8 @@ def first_collision(path: np.ndarray, arrays: ObstacleArrays) -> int:
         while k >= 0 and j < path.shape[0] and path[j, 0] == bx and path[j, 1] == by:
             j += 1  # a path that waits in the pinch point bends there all the same
         arrives = k >= 0 and not (ax == bx and ay == by)
-        if (
-            arrives
-            and j < path.shape[0]
-            and turn_is_closed(ax, ay, path[j, 0], path[j, 1], arrays.pinches, arrays.ways, k)
-        ):
-            return i
+        if arrives and j < path.shape[0]:
+            cx, cy = np.float64(path[j, 0]), np.float64(path[j, 1])
+            if turn_is_closed(ax, ay, cx, cy, arrays.pinches, arrays.ways, k):
+                return i
     return -1

@@ -20,7 +20,7 @@ from suite.harness.prepared import (
     stream,
 )
 from suite.harness.simulated import simulated
-from suite.planner import Plan, PlanStatus, Recorder
+from suite.planner import Plan, PlanStatus, Recorder, refusal
 from suite.record import Cell, RunRecord
 from suite.reported import as_count, improvements, trace
 from suite.scene import Query, scene_fingerprint
@@ -93,9 +93,9 @@ def _run(
         raise SceneError(f"{cell.scene_source}: is not the scene any more that it was at first.")
     planner = build_planner(cell.planner, cell.settings)
     planner.warm_up()
-    refusal = planner.refuse(scene, query, cell.budget)
-    if refusal is not None:
-        return replace(blank, status=PlanStatus.REFUSED, reason=str(refusal))
+    reason = refusal(planner, scene, query, cell.budget)
+    if reason is not None:
+        return replace(blank, status=PlanStatus.REFUSED, reason=str(reason))
     rng = stream(cell)
     before_plan()
     if cell.world is not None:

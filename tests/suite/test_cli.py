@@ -170,7 +170,10 @@ def test_a_planner_that_refuses_is_not_simulated(kbga_bench):
     wanted = ("simulate", "door", "--planner", "ompl-rrtstar", "--generations", 9)
     said = kbga_bench(*wanted, code=1).out
     assert "door / ompl-rrtstar / seed 0: refused" in said
-    assert "ompl-rrtstar can't be limited by generations." in said
+    assert (
+        "ompl-rrtstar keeps no budget of generations. Give one that it keeps: checks, wall_s."
+        in said
+    )
 
 
 def test_generate_keeps_a_scene_as_a_file_that_is_the_same_scene(kbga_bench, tmp_path):

@@ -77,9 +77,14 @@ def test_its_row_says_the_file_and_a_hash_of_its_code(file):
     assert load_planner("bent").changed
 
 
-def test_a_file_that_changed_since_is_refused(file):
+@pytest.mark.parametrize("changed", ["my_planners.py", "helper_of_mine.py"])
+def test_code_that_changed_since_is_refused(file, changed):
+    (file.parent / "helper_of_mine.py").write_text("")
+    file.write_text(f"import helper_of_mine\n{CODE}")
     name_plugins([str(file)])
-    file.write_text(CODE + "\n# changed\n")
+    with (file.parent / changed).open("a") as code:
+        code.write("\n# changed\n")
+    del sys.modules["helper_of_mine"]
     with pytest.raises(PluginError, match="changed since the command began"):
         load_planner("bent")
 

@@ -13,6 +13,7 @@ from suite.plugins import (
     load_planner,
     make_settings,
     planner_names,
+    planner_version,
     settings_as_dict,
 )
 
@@ -120,9 +121,26 @@ def test_a_third_party_planner_is_found_and_loaded(install):
     assert "walk" in planner_names()
     assert load_planner("walk").name == "walk"
     info = row("walk")
-    assert (info.distribution, info.version, info.available) == ("walkers", "1.2", True)
+    assert (info.distribution, info.available) == ("walkers", True)
+    assert info.version.startswith("1.2 sha256-")
     assert info.reason is None
     assert info.abilities.anytime
+
+
+@pytest.mark.parametrize("value", [":Walk", "walkers:", "", "no such thing"])
+def test_an_entry_point_to_nothing_is_a_row_and_stops_nothing(install, value):
+    install("walkers", {"walk": value}, GOOD)
+    assert not row("walk").available
+    assert row("kbga").available
+
+
+def test_a_third_party_planner_whose_code_changed_has_another_version(install):
+    folder = install("walkers", {"walk": "walkers:Walk"}, GOOD)
+    before = planner_version("walk")
+    (folder / "walkers.py").write_text(GOOD + "\n# tuned\n")
+    assert planner_version("walk") != before
+    (folder / "walkers.py").write_text(GOOD)
+    assert planner_version("walk") == before
 
 
 def test_a_misspelt_name_is_answered_with_the_nearest():

@@ -25,6 +25,13 @@ for (const figure of document.querySelectorAll("[data-chart]")) {
     Plotly.react(figure.querySelector(".plot"), shown.map((line) => line.trace), layouts[clock.value], config);
   };
 
+  const choose = (all) => {
+    for (const box of boxes) box.checked = all;
+    draw();
+  };
+
   for (const control of [scene, clock, ...boxes]) control.addEventListener("change", draw);
+  for (const button of figure.querySelectorAll("[data-all]"))
+    button.addEventListener("click", () => choose(button.dataset.all === "yes"));
   draw();
 }

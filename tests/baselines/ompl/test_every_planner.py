@@ -27,7 +27,7 @@ from baselines.ompl.watched import (
     SORRTstarPlanner,
 )
 from suite.exact import shortest_path
-from suite.planner import Budget, PlanStatus, Recorder
+from suite.planner import Budget, PlanStatus, Recorder, refusal
 from suite.referee import Referee
 from suite.scene import Query
 from suite.scenes.catalogue import load_scene
@@ -168,9 +168,13 @@ def test_without_a_budget_the_default_of_the_settings_ends_the_run(planner):
 @each
 def test_generations_alone_are_refused_with_a_reason(planner):
     scene = SCENES["one box"]
-    assert "wall_s or checks" in planner.refuse(scene, scene.query(), Budget(generations=10))
+    reason = refusal(planner, scene, scene.query(), Budget(generations=10))
+    assert (
+        reason
+        == f"{planner.name} keeps no budget of generations. Give one that it keeps: checks, wall_s."
+    )
     for budget in (Budget(), Budget(checks=1), Budget(generations=10, wall_s=1.0)):
-        assert planner.refuse(scene, scene.query(), budget) is None
+        assert refusal(planner, scene, scene.query(), budget) is None
 
 
 # Randomness

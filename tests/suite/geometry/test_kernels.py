@@ -450,3 +450,10 @@ def test_the_first_collision_of_a_path_is_the_first_segment_that_enters():
     assert hit(ONE_BOX, (0, 0), (3, 3), (6, 3), (6, 6)) == -1
     assert hit(ONE_BOX, (4, 4), (4, 4)) == 0
     assert hit(ONE_BOX, (0, 0)) == -1
+
+
+@pytest.mark.parametrize("kind", [np.int64, np.int32, np.float32])
+def test_whole_numbers_are_coordinates_too(kind):
+    for path in ([(0, 0), (2, 0), (2, 9), (9, 2)], [(0, 0), (3, 3), (6, 3), (6, 6)]):
+        wanted = hit(ONE_BOX, *path)
+        assert first_collision(np.array(path, dtype=kind), ONE_BOX.arrays) == wanted

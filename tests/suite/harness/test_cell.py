@@ -3,7 +3,7 @@ import pytest
 
 from suite.harness.cell import run_cell, stream
 from suite.harness.single import cell_for
-from suite.planner import PlanStatus, Recorder
+from suite.planner import Budget, PlanStatus, Recorder
 from tests.suite.harness.records import make_cell
 
 
@@ -85,6 +85,12 @@ def test_a_refused_run_starts_no_clock(hostile, wall_file):
     )
     assert not started
     assert record.wall_s is None
+
+
+def test_a_budget_that_the_planner_does_not_keep_is_refused_by_the_harness(hostile, wall_file):
+    record = run_cell(cell_for(str(wall_file), "wanderer", seed=0, budget=Budget(checks=200)))
+    assert record.status is PlanStatus.REFUSED
+    assert record.reason == "wanderer keeps no budget of checks. It keeps none: give none."
 
 
 def test_what_a_planner_reports_is_there_for_the_caller_afterwards(hostile, wall_file):

@@ -134,6 +134,16 @@ def test_scene_clock_and_planners_of_a_chart_can_be_chosen(seen, chart):
     assert seen.page.evaluate(axis) == "collision checks"
 
 
+def test_of_many_planners_a_few_are_chosen_from_none(seen):
+    figure = seen.page.locator("[data-chart=convergence]")
+    figure.get_by_role("button", name="none").click()
+    assert set(seen.traces("convergence")) <= {None}
+    figure.get_by_role("checkbox", name="kbga", exact=True).click()
+    assert set(seen.traces("convergence")) - {None} == {"kbga"}
+    figure.get_by_role("button", name="all").click()
+    assert set(seen.traces("convergence")) - {None} == {"kbga", "visibility-graph"}
+
+
 def test_who_is_not_in_a_chart_is_named(seen):
     figure = seen.page.locator("[data-chart=convergence]")
     figure.locator("select").nth(1).select_option("generation")
