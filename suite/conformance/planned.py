@@ -105,7 +105,7 @@ def path_has_the_right_ends(subject: Subject) -> Outcome:
             f"{trial.label}: a path from {tuple(first)} to {tuple(last)}",
             "query.start as its first row and query.goal as its last, to the last bit",
             "Put query.start and query.goal themselves into the path, not what a grid made of "
-            "them; list the path from the start on.",
+            "them, nor those of scene.query(); list the path from the start on.",
         )
 
     return _first(subject, judge)
@@ -223,7 +223,7 @@ def _finding_of_reports(trial: Trial) -> Finding | None:
         "costs in metres of feasible paths, each with its generation and checks so far; the path "
         "returned is the best reported",
         "Call recorder.improved(length) when, and only when, a feasible path is a new best, and "
-        "return that path.",
+        "return that path; generation_of_best is the generation that was reported with it.",
     )
 
 
