@@ -23,7 +23,7 @@ import psutil
 import shapely
 
 from suite.exact import shortest_path
-from suite.planner import Improvement, Plan, Planner, PlanStatus
+from suite.planner import Abilities, Improvement, Plan, Planner, PlanStatus
 from suite.scene import make_scene
 
 
@@ -53,6 +53,7 @@ class Wanderer(_Base):
 
     name = "wanderer"
     Settings = WandererSettings
+    abilities = Abilities(budgets=frozenset({"generations"}))
 
     def plan(self, scene, query, budget, rng, recorder):
         by = query.start + self.settings.reach * rng.random(2)

@@ -90,7 +90,9 @@ def test_a_refused_run_starts_no_clock(hostile, wall_file):
 def test_a_budget_that_the_planner_does_not_keep_is_refused_by_the_harness(hostile, wall_file):
     record = run_cell(cell_for(str(wall_file), "wanderer", seed=0, budget=Budget(checks=200)))
     assert record.status is PlanStatus.REFUSED
-    assert record.reason == "wanderer keeps no budget of checks. It keeps none: give none."
+    assert record.reason == (
+        "wanderer keeps no budget of checks. Give one that it keeps: generations."
+    )
 
 
 def test_what_a_planner_reports_is_there_for_the_caller_afterwards(hostile, wall_file):
