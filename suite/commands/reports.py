@@ -82,9 +82,10 @@ def compare(
         TableFormat.TABLE
     ),
 ) -> None:
-    """Compare two stores of the same matrix: what got better, and what got worse.
+    """Compare two stores of the same matrix: what is shown to be better, and what worse.
 
-    Exit code 0 if nothing got worse, 1 if something did.
+    Exit code 1 if something is shown to be worse, 0 otherwise. A difference that so few runs can't
+    show is called "not shown", and the last line says how many runs would do.
 
     Example: kbga-bench compare before.db after.db
     """
