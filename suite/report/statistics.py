@@ -193,17 +193,20 @@ def mann_whitney(a: Array, b: Array) -> float:
     float
         1 if all scores are equal. Exact for small samples.
     """
-    distinct, orders = len(np.unique(np.concatenate([a, b]))), comb(len(a) + len(b), len(a))
+    distinct = len(np.unique(np.concatenate([a, b])))
     if distinct == 1:
         return 1.0
-    has_ties = distinct < len(a) + len(b)
-    # Of small samples scipy counts the orders by itself only where no two scores are equal.
-    method: Literal["auto"] | stats.PermutationMethod = (
-        stats.PermutationMethod(n_resamples=ORDERS_AT_MOST)
-        if has_ties and orders <= ORDERS_AT_MOST
-        else "auto"
-    )
+    method = _counted_or_approximated(len(a), len(b)) if distinct < len(a) + len(b) else "auto"
     return float(stats.mannwhitneyu(a, b, alternative="two-sided", method=method).pvalue)
+
+
+def _counted_or_approximated(m: int, n: int) -> Literal["auto", "exact"] | stats.PermutationMethod:
+    """How to find the p-value where scores tie: scipy itself counts orders only where none do."""
+    if min(m, n) == 1:
+        return "exact"
+    if comb(m + n, m) <= ORDERS_AT_MOST:
+        return stats.PermutationMethod(n_resamples=ORDERS_AT_MOST)
+    return "auto"
 
 
 @cache

@@ -91,6 +91,7 @@ def test_mann_and_whitneys_p_value_is_scipys_and_1_without_any_difference():
 def test_ties_in_small_samples_are_counted_and_not_approximated():
     # Twice the share of the 10 ways to choose 3 of 5 that are as extreme on this side.
     assert mann_whitney(np.zeros(3), np.ones(2)) == pytest.approx(2 / 10)
+    assert mann_whitney(np.zeros(1), np.ones(5)) == pytest.approx(2 / 6)
     assert mann_whitney(np.array([0.0, 0.0, 1.0]), np.array([1.0, 1.0])) == pytest.approx(
         2 * 3 / 10
     )
