@@ -76,10 +76,10 @@ def all_tables(
             *summary_tables(kept, left_out),
             *moving,
             *study_tables(kept, first),
+            *ablation_tables(kept, COST_NOTE),
             *measured,
             *told,
             *paper_tables(kept),
-            *ablation_tables(kept, COST_NOTE),
         ]
     )
 

@@ -20,7 +20,7 @@ from suite.report.html.drives import drive_sheets
 from suite.report.html.evidence import Evidence, read_evidence
 from suite.report.html.failures import failures_table, full_reasons
 from suite.report.html.missing import missing_table
-from suite.report.html.overview import headline, overview_tables
+from suite.report.html.overview import headline, overview_sheets
 from suite.report.html.player import played_runs
 from suite.report.html.provenance import provenance_tables
 from suite.report.html.scenes import scene_pictures
@@ -77,7 +77,7 @@ def render_report(evidence: Evidence) -> str:
         .render(
             store=evidence.store.name,
             headline=headline(evidence),
-            overview=[sheet(table) for table in overview_tables(evidence)],
+            overview=overview_sheets(evidence),
             pictures=pictures,
             pictures_left_out=pictures_left_out,
             charts=charts,
