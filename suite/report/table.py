@@ -104,8 +104,8 @@ def _plain(table: Table) -> str:
     ).splitlines()
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     lines.insert(height, "  ".join("-" * width for width in widths))
-    note = textwrap.fill(table.note, NOTE_WIDTH)
-    return "\n".join([table.title, "", *lines, _below(note)])
+    title, note = (textwrap.fill(text, NOTE_WIDTH) for text in (table.title, table.note))
+    return "\n".join([title, "", *lines, _below(note)])
 
 
 def _broken(header: str) -> list[str]:

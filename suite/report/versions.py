@@ -83,13 +83,15 @@ class Changes:
         return self.verdicts.get(BETTER, 0)
 
     def summary(self) -> str:
-        """Counts of the verdicts, and a warning where there are too few runs."""
+        """Counts of the verdicts; where there are too few runs, a second line that says so."""
         words = [BETTER, WORSE, *(w for w in (NOT_SHOWN, SAME) if w in self.verdicts)]
         counts = ", ".join(f"{self.verdicts.get(word, 0)} {word}" for word in words)
         counted = sum(self.verdicts.values())
         rest = len(self.table.frame) - counted
         times = f"; {rest} of times are not counted" if rest else ""
-        return " ".join(filter(None, [f"{counts}, of {counted} comparisons{times}.", self.too_few]))
+        return "\n".join(
+            filter(None, [f"{counts}, of {counted} comparisons{times}.", self.too_few])
+        )
 
 
 def compare_versions(
