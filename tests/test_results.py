@@ -91,12 +91,11 @@ def test_the_gaps_of_the_readme_are_those_of_the_summary():
     for scene, _, *cells in lines:
         for planner, cell in zip(planners, cells, strict=True):
             row = summary.loc[(scene, re.sub(r" \(.*", "", planner))]
-            some = (
-                "" if row["solved"] == row["runs"] else f", {row['solved']} of {row['runs']} runs"
-            )
+            solved, runs = int(row["solved"]), int(row["runs"])
+            some = "" if solved == runs else f", {solved} of {runs} runs"
             # Rounding may leave a zero with a sign.
             told = f"{round(row['gap mean (%)'], 2) + 0.0:.2f} %{some}"
-            assert cell == (told if row["solved"] else f"no path in {row['runs']} runs"), scene
+            assert cell == (told if solved else f"no path in {runs} runs"), scene
 
 
 def test_table_1_of_the_readme_is_that_of_the_results():

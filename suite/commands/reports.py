@@ -15,6 +15,14 @@ from suite.commands.options import (
     TableFormat,
 )
 
+ReferenceOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="PLANNER",
+        help="Compare the others with this one; default: kbga, or else the first.",
+    ),
+]
+
 
 class ExportFormat(StrEnum):
     """Files that rows can be exported to."""
@@ -50,25 +58,33 @@ def tables(
     output: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write a file for each table instead.")
     ] = None,
+    only: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Only this table; repeatable.")
+    ] = None,
+    reference: ReferenceOption = None,
 ) -> None:
-    """Print the tables of a store: a summary, the paper's figures beside ours, and comparisons.
+    """Print the tables of a store: a summary, comparisons, and the paper's figures beside ours.
 
-    As text, tables of the rows behind another table are left out; a last line names them.
+    As text, tables of the rows behind another table are left out unless --only asks for them; a
+    last line names them. LaTeX needs the packages booktabs, graphicx and longtable.
 
     Example: kbga-bench tables out/paper.db --format markdown
+
+    Example: kbga-bench tables out/paper.db --only summary --only ranking
     """
     from suite.report.results import read_tables, write_tables
-    from suite.report.table import Format, render
+    from suite.report.table import Format, named, render
 
-    found = read_tables(store)
+    found = named(read_tables(store, reference), only or [])
     if output is not None:
         for path in write_tables(found, output, Format(style)):
             typer.echo(path)
         return
-    hidden = [table.name for table in found if table.detail and style is TableFormat.TABLE]
+    left_out = style is TableFormat.TABLE and not only
+    hidden = [table.name for table in found if table.detail and left_out]
     shown = [render(table, Format(style)) for table in found if table.name not in hidden]
     if hidden:
-        shown.append(f"Not printed, but written with --output: {', '.join(hidden)}.\n")
+        shown.append(f"Not printed, but with --only or --output: {', '.join(hidden)}.\n")
     typer.echo("\n".join(shown), nl=False)
 
 
@@ -82,9 +98,10 @@ def compare(
         TableFormat.TABLE
     ),
 ) -> None:
-    """Compare two stores of the same matrix: what got better, and what got worse.
+    """Compare two stores of the same matrix: what is shown to be better, and what worse.
 
-    Exit code 0 if nothing got worse, 1 if something did.
+    Exit code 1 if something is shown to be worse, 0 otherwise. A difference that so few runs can't
+    show is called "not shown", and the last line says how many runs would do.
 
     Example: kbga-bench compare before.db after.db
     """
@@ -155,6 +172,7 @@ def report(
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FILE", help="Page to write: .html.")
     ] = Path("report.html"),
+    reference: ReferenceOption = None,
 ) -> None:
     """Write a report: one page with tables, charts and pictures that opens without a network.
 
@@ -162,5 +180,5 @@ def report(
     """
     from suite.report.html.page import write_report
 
-    write_report(store, output)
+    write_report(store, output, reference=reference)
     typer.echo(output)

@@ -31,14 +31,14 @@ MANY = 200
 """Runs of a planner in a panel from which they are drawn smaller."""
 
 ABOVE = 6.0
-"""How far the axis goes on above the largest gap, for failed runs; as far again for words."""
+"""How far the axis goes on above the largest gap, for runs without path; as far again for words."""
 
 SHARE_TEXT: dict[str, Any] = {"ha": "center", "va": "top", "rotation": 90, "fontsize": SMALL - 1}
 
 BOXES_NOTE = (
     "Box: quartiles and median of the runs that found a path; whiskers: the farthest runs within "
     "1.5 boxes; circles: runs beyond. Above: how many of how many runs found a path, where not all "
-    "did. One that failed is in no box."
+    "did. One without path is in no box."
 )
 SCATTER_NOTE = (
     "A mark is a run: when it first had its final path, and how good that is. Above the line: runs "

@@ -7,10 +7,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm
+from matplotlib.colors import Colormap, LogNorm
 from matplotlib.figure import Figure
 
-from suite.report.anytime import Steps
+from suite.report.anytime import Array, Steps
 from suite.report.panels import LEAST_GAP, SMALL, legend, plain_number
 from suite.report.ranking import rankings, scene_scores
 
@@ -138,9 +138,7 @@ def _draw(axes: Axes, drawn: _Map, planners: list[str]) -> None:
     """Draw one map: its cells, their numbers, the names around them."""
     values = drawn.numbers.loc[planners].to_numpy()
     texts = drawn.texts.loc[planners].to_numpy()
-    colours = plt.get_cmap("viridis_r").with_extremes(bad=NOTHING)
-    highest = np.nanmax(values) if np.isfinite(values).any() else drawn.least
-    norm = LogNorm(drawn.least, max(highest, 10.0 * drawn.least))
+    colours, norm = colouring(values, drawn.least)
     shades = np.ma.masked_invalid(np.maximum(values, drawn.least))
     axes.imshow(shades, cmap=colours, norm=norm, aspect="auto")
     for (row, column), text in np.ndenumerate(texts):
@@ -159,6 +157,21 @@ def _draw(axes: Axes, drawn: _Map, planners: list[str]) -> None:
     axes.grid(which="minor", color="white", linewidth=0.8)
     axes.tick_params(which="minor", length=0)
     axes.spines[:].set_visible(False)
+
+
+def colouring(values: Array, least: float) -> tuple[Colormap, LogNorm]:
+    """The colours of numbers and their scale, logarithmic: darker is higher.
+
+    Parameters
+    ----------
+    values : float64 of any shape
+        nan where there is none.
+    least : float
+        The scale begins here.
+    """
+    highest = np.nanmax(values) if np.isfinite(values).any() else least
+    colours = plt.get_cmap("viridis_r").with_extremes(bad=NOTHING)
+    return colours, LogNorm(least, max(highest, 10.0 * least))
 
 
 def _letters(norm: LogNorm, shade: Any) -> str:

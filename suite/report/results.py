@@ -104,13 +104,21 @@ def write_results(
     return [*files, manifest]
 
 
-def read_tables(store: Path) -> list[Table]:
+def read_tables(store: Path, reference: str | None = None) -> list[Table]:
     """All tables of a store.
+
+    Parameters
+    ----------
+    store : Path
+    reference : str, optional
+        The planner that the statistics compare the others with; default: kbga, or else the first.
 
     Raises
     ------
     StoreError
         If it can't be read.
+    KbgaBenchError
+        If no run is of the reference.
     """
     return all_tables(
         read_runs(store),
@@ -118,6 +126,7 @@ def read_tables(store: Path) -> list[Table]:
         read_events(store),
         simulations=read_simulations(store),
         replans=read_replans(store),
+        reference=reference,
     )
 
 

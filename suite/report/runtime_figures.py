@@ -73,7 +73,7 @@ def plot_ecdf(steps: Steps) -> Figure:
     variants = known.runs["variant"].to_numpy()
     for axes, (clock, (label, unit)) in zip(panels, CLOCKS.items(), strict=True):
         reached = unit * np.array([first_within(known, clock, target) for target in TARGETS])
-        # The failed runs alone of a planner that does not count would say that it reaches nothing.
+        # Runs without path alone, of a planner that does not count: as if it reached nothing.
         silent = set(variants[known.run[np.isnan(known.clocks[clock])]])
         named = {planner: i for planner, i in planners.items() if planner not in silent}
         _draw_ecdf(axes, reached, variants, named)

@@ -3,17 +3,19 @@
 Everything is computed from the gaps of the runs on the scenes that have an optimum and that all
 planners ran. A run without an accepted path has an infinite gap: in ranks and probabilities it is
 worse than any path, and an interquartile mean is given only where at most a quarter of all runs
-failed; no other number is put in its place.
+have none; no other number is put in its place.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from suite.errors import KbgaBenchError
 from suite.report.anytime import Array, Steps, final_gaps
 from suite.report.compared import SIDE_BY_SIDE, at_a_glance
+from suite.report.few_runs import too_few
 from suite.report.statistics import (
     Interval,
     bootstrap,
@@ -26,20 +28,39 @@ from suite.report.statistics import (
 from suite.report.table import Table
 
 REFERENCE = "kbga"
-"""The planner that the others are compared with; the first one where it is missing."""
+"""The planner that the others are compared with, unless another one is asked for; the first one
+where it is missing."""
 
 IQM_NOTE = (
-    "IQM: mean of the middle half of the gaps of all runs, in which a failed run has an infinite "
-    "one; 'none' where more than a quarter failed."
+    "IQM: mean of the middle half of the gaps of all runs, in which a run without path has an "
+    "infinite one; 'none' where more than a quarter have no path."
 )
 INTERVAL_NOTE = (
     "Low and high: 95 % intervals of a bootstrap that resamples the runs within each scene; empty "
     "where a scene has one run."
 )
 PAIR_NOTE = (
-    "{reference} better: probability that a run of {reference} ends with a smaller gap than one of "
-    "this planner on the same scene, a tie counting half, a failed run being worse than any path"
+    "P({reference} better): probability that a run of {reference} ends with a smaller gap than a "
+    "run of the planner that the row names, on the same scene: 1 where {reference} always does, 0 "
+    "where the other one always does, 0.5 where neither is better. A tie counts half; a run "
+    "without path is worse than any path"
 )
+
+
+def check_reference(planners: Iterable[str], reference: str | None) -> None:
+    """Refuse a reference that is none of the planners.
+
+    Raises
+    ------
+    KbgaBenchError
+        With the names that there are.
+    """
+    names = list(dict.fromkeys(planners))
+    if reference is not None and reference not in names:
+        raise KbgaBenchError(
+            f"--reference: there is no planner '{reference}' in the store. Take one of: "
+            f"{', '.join(names) or 'none, for it is empty'}."
+        )
 
 
 def scores_by_planner(steps: Steps) -> tuple[list[str], dict[str, Array]]:
@@ -73,7 +94,9 @@ def _side_by_side(columns: "list[pd.Series[Any]]") -> Array:
     return scores
 
 
-def planner_statistics(scores: Mapping[str, Array], rng: np.random.Generator) -> pd.DataFrame:
+def planner_statistics(
+    scores: Mapping[str, Array], rng: np.random.Generator, reference: str
+) -> pd.DataFrame:
     """Interquartile mean of the gap and probability that the reference is better, with intervals.
 
     Parameters
@@ -81,35 +104,40 @@ def planner_statistics(scores: Mapping[str, Array], rng: np.random.Generator) ->
     scores : mapping from planner to (runs, scenes) float64
         See :func:`scores_by_planner`.
     rng : numpy.random.Generator
+    reference : str
+        One of the planners.
 
     Returns
     -------
     DataFrame
         A row for each planner.
     """
-    reference = reference_of(scores)
     rows = []
     for planner, mine in scores.items():
         row: dict[str, Any] = {
             "planner": planner,
             "runs": int((~np.isnan(mine)).sum()),
-            "failed": int(np.isinf(mine).sum()),
+            "without path": int(np.isinf(mine).sum()),
             **_named("gap IQM (%)", _in_per_cent(bootstrap(mine, interquartile_mean, rng))),
         }
         if planner != reference:
             better = probability_interval(scores[reference], mine, rng)
-            row |= _named(f"{reference} better", better)
+            row |= _named(_better(reference), better)
         rows.append(row)
     return pd.DataFrame(rows)
 
 
-def scene_statistics(scenes: list[str], scores: Mapping[str, Array]) -> pd.DataFrame:
+def scene_statistics(
+    scenes: list[str], scores: Mapping[str, Array], reference: str
+) -> pd.DataFrame:
     """Mann and Whitney's test of the reference against each other planner on each scene.
 
     Parameters
     ----------
     scenes : list of str
     scores : mapping from planner to (runs, scenes) float64
+    reference : str
+        One of the planners.
 
     Returns
     -------
@@ -117,7 +145,6 @@ def scene_statistics(scenes: list[str], scores: Mapping[str, Array]) -> pd.DataF
         A row for each other planner and scene; p-values as they are, and corrected for the number
         of rows, after Holm.
     """
-    reference = reference_of(scores)
     rows = []
     for planner in [name for name in scores if name != reference]:
         for j, scene in enumerate(scenes):
@@ -125,54 +152,94 @@ def scene_statistics(scenes: list[str], scores: Mapping[str, Array]) -> pd.DataF
             better = probability_better(mine[:, None], other[:, None])
             p_value = mann_whitney(mine[~np.isnan(mine)], other[~np.isnan(other)])
             rows.append(
-                {"scene": scene, "planner": planner, f"{reference} better": better, "p": p_value}
+                {"scene": scene, "planner": planner, _better(reference): better, "p": p_value}
             )
     frame = pd.DataFrame(rows)
     return frame.assign(**{"Holm's p": holm(frame["p"].to_numpy())}) if rows else frame
 
 
 def reference_of(scores: Mapping[str, Array]) -> str:
-    """The planner that the others are compared with."""
+    """The planner that the others are compared with, if none is asked for."""
     return REFERENCE if REFERENCE in scores else next(iter(scores))
 
 
-def statistics_tables(steps: Steps, rng: np.random.Generator) -> list[Table]:
-    """Statistics of the planners over all scenes, and tests scene by scene."""
+def _better(reference: str) -> str:
+    return f"P({reference} better)"
+
+
+def statistics_tables(
+    steps: Steps, rng: np.random.Generator, reference: str | None = None
+) -> list[Table]:
+    """Statistics of the planners over all scenes, and tests scene by scene.
+
+    Parameters
+    ----------
+    steps : Steps
+    rng : numpy.random.Generator
+    reference : str, optional
+        The planner that the others are compared with; default: :data:`REFERENCE`.
+    """
     scenes, scores = scores_by_planner(steps)
     if not scenes:
         return []
     where = f"{len(scenes)} scene{'s' if len(scenes) != 1 else ''}"
-    overall = planner_statistics(scores, rng)
+    one = reference or reference_of(scores)
+    overall = planner_statistics(scores, rng, one)
     if len(scores) == 1:
         title = f"Gap over {where}, with 95 % intervals"
         return [Table("statistics", title, overall, f"{IQM_NOTE} {INTERVAL_NOTE}", "none")]
-    pair = PAIR_NOTE.format(reference=reference_of(scores))
-    title = f"Gap and pairwise probabilities over {where}, with 95 % intervals"
+    pair = PAIR_NOTE.format(reference=one)
+    title = (
+        f"Gap over {where}, and probability that {one} is better than the planner of the row, with "
+        "95 % intervals"
+    )
     note = f"{IQM_NOTE} {pair}; mean over the scenes. {INTERVAL_NOTE}"
-    return [Table("statistics", title, overall, note, "none"), *_scene_tables(scenes, scores, pair)]
+    tests = _scene_tables(scenes, scores, one, pair)
+    return [Table("statistics", title, overall, note, "none"), *tests]
 
 
-def _scene_tables(scenes: list[str], scores: Mapping[str, Array], pair: str) -> list[Table]:
+def _scene_tables(
+    scenes: list[str], scores: Mapping[str, Array], reference: str, pair: str
+) -> list[Table]:
     """Mann and Whitney's tests: at a glance, where there is room, and as rows."""
-    reference = reference_of(scores)
-    title = f"Probability that {reference} is better on each scene"
-    tested = scene_statistics(scenes, scores)
+    tested = scene_statistics(scenes, scores, reference)
+    warning = too_few(_sizes(scores, reference))
     tests = (
         "Mann and Whitney's two-sided p-value, after Holm's correction for all "
         f"{len(tested)} comparisons of this table."
     )
-    rows = Table("statistics-scenes-rows", title, tested, f"{pair}. Holm's p: {tests}", detail=True)
+    rows = Table(
+        "statistics-scenes-rows",
+        f"Tests of {reference} against the planner of the row, scene by scene",
+        tested,
+        " ".join(filter(None, [f"{pair}. Holm's p: {tests}", warning])),
+        detail=True,
+    )
     if len(scenes) > SIDE_BY_SIDE:
         return [rows]
-    glanced = at_a_glance(tested, ["planner"], _tested(reference))
-    return [Table("statistics-scenes", title, glanced, f"{pair}. In brackets: {tests}"), rows]
+    glanced = at_a_glance(tested, ["planner"], _tested(reference, with_p=not warning))
+    title = f"Probability that {reference} is better than the planner of the row, scene by scene"
+    note = f"{pair}. {warning or f'In brackets: {tests}'}"
+    return [Table("statistics-scenes", title, glanced, note), rows]
 
 
-def _tested(reference: str) -> Callable[[Mapping[Any, Any]], str]:
+def _sizes(scores: Mapping[str, Array], reference: str) -> list[tuple[int, int]]:
+    """Numbers of runs of the two sides of each comparison."""
+    runs = {name: (~np.isnan(mine)).sum(axis=0).tolist() for name, mine in scores.items()}
+    return [
+        pair
+        for name in scores
+        if name != reference
+        for pair in zip(runs[reference], runs[name], strict=True)
+    ]
+
+
+def _tested(reference: str, *, with_p: bool) -> Callable[[Mapping[Any, Any]], str]:
     def cell(row: Mapping[Any, Any]) -> str:
+        better = f"{row[_better(reference)]:.2f}"
         p_value = row["Holm's p"]
         small = "<0.001" if p_value < 0.001 else f"{p_value:.3f}"
-        return f"{row[f'{reference} better']:.2f} ({small})"
+        return f"{better} ({small})" if with_p else better
 
     return cell
 

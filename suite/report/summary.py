@@ -1,4 +1,9 @@
-"""The table of everything: for each scene and planner, how often and how well it solved it."""
+"""The summary: for each scene and planner, how often and how well it solved it.
+
+The same three words stand in all tables. solved: the referee accepts the path, or the proof that
+there is none. without path: all other runs. failed: those of these that broke and did not merely
+find nothing.
+"""
 
 from typing import Any
 
@@ -10,11 +15,45 @@ from suite.report.table import Table
 SUCCESSES = (str(PlanStatus.SOLVED), str(PlanStatus.INFEASIBLE))
 """A proof that there is no path, which the harness has checked, is the right answer."""
 
+FAILURES = (
+    str(PlanStatus.INVALID),
+    str(PlanStatus.ERROR),
+    str(PlanStatus.CRASHED),
+    str(PlanStatus.TIMED_OUT),
+    str(PlanStatus.OUT_OF_MEMORY),
+)
+"""What ``run --only-failed`` does again."""
+
+NARROW = [
+    "scene",
+    "planner",
+    "runs",
+    "solved",
+    "gap median (%)",
+    "gap mean (%)",
+    "cost mean",
+    "gen to best mean",
+    "time total median (ms)",
+]
+"""Columns that fit into a terminal and onto a page."""
+
+WORDS = (
+    "solved: with a path that the referee accepts, or with the proof that there is none. without "
+    "path: all others; most end properly, at the budget or at the planner's own stop criterion "
+    "(exhausted), or with the planner's refusal of the scene (refused). failed: of these, the runs "
+    f"that broke ({', '.join(FAILURES)}); `run --only-failed` does them again."
+)
+
 NOTE = (
-    "Costs are the referee's path lengths in metres, over solved runs only; failures count in the "
-    "success rate. gap: cost above the exact shortest path. SD: sample standard deviation "
-    "(n - 1). gen to best, time to best: until the final path was first found, solved runs; gen "
-    "total, time total: until the run stopped, all runs that ended by themselves."
+    "gap: cost above the exact shortest path. cost: the referee's path length, metres; both over "
+    "solved runs only. gen to best: until the final path was first found, solved runs; time total: "
+    "until the run stopped, all runs that ended by themselves."
+)
+
+ROWS_NOTE = (
+    "SD: sample standard deviation (n - 1). time to best: until the final path was first found, "
+    "solved runs; gen total: until the run stopped, all runs that ended by themselves. otherwise: "
+    "how the runs without path ended."
 )
 
 
@@ -34,18 +73,41 @@ def summary(runs: pd.DataFrame) -> pd.DataFrame:
     groups = runs.groupby(["scene", "query", "variant"], sort=False)
     rows = [{**_names(runs, name), **_measures(group)} for name, group in groups]
     frame = pd.DataFrame(rows, columns=None if rows else ["scene", "planner", "runs"])
-    for column in ("runs", "solved"):
+    for column in ("runs", "solved", "without path", "failed"):
         if column in frame:
             frame[column] = frame[column].astype("int64")
     return frame
 
 
-def summary_table(runs: pd.DataFrame, left_out: int = 0) -> Table:
-    """The summary with its title and note, which counts the rows that were left out as outdated."""
-    note = NOTE
+def summary_tables(runs: pd.DataFrame, left_out: int = 0) -> list[Table]:
+    """The summary in a few columns, and in all.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        As :func:`suite.store.read_runs` gives it.
+    left_out : int
+        Rows that were left out as outdated; the note counts them.
+    """
+    frame = summary(runs)
+    note = f"{_counted(runs)} {WORDS} {NOTE}"
     if left_out:
         note += f" Left out: {left_out} rows of scenes, settings or planners that changed since."
-    return Table("summary", "Results per scene and planner", summary(runs), note)
+    narrow = frame[[name for name in NARROW if name in frame]]
+    return [
+        Table("summary", "Results per scene and planner", narrow, note),
+        Table("summary-rows", "All measures per scene and planner", frame, f"{note} {ROWS_NOTE}",
+              detail=True),
+    ]  # fmt: skip
+
+
+def _counted(runs: pd.DataFrame) -> str:
+    """How the runs ended, in the words of the tables."""
+    solved, failed = (int(runs["status"].isin(kind).sum()) for kind in (SUCCESSES, FAILURES))
+    return (
+        f"{len(runs)} runs: {solved} solved, {len(runs) - solved} without path, of these {failed} "
+        "failed."
+    )
 
 
 def feasible(runs: pd.DataFrame) -> pd.DataFrame:
@@ -76,9 +138,12 @@ def _measures(group: pd.DataFrame) -> dict[str, Any]:
     return {
         "runs": len(group),
         "solved": successes,
+        "without path": len(group) - successes,
+        "failed": int(group["status"].isin(FAILURES).sum()),
         "success (%)": 100.0 * successes / len(group),
         "cost best": float(solved["cost"].min()),
         **spread(solved["cost"], "cost"),
+        "gap median (%)": 100.0 * float(solved["gap"].median()),
         "gap mean (%)": 100.0 * float(solved["gap"].mean()),
         **spread(solved["generation_of_best"], "gen to best"),
         **spread(group["generations"], "gen total"),

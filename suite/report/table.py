@@ -2,7 +2,7 @@
 
 import math
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from numbers import Integral, Real
@@ -11,10 +11,15 @@ from typing import Any
 import pandas as pd
 from tabulate import tabulate
 
-HEADER_WIDTH = 9
-NOTE_WIDTH = 100
+from suite.errors import KbgaBenchError
+
+HEADER_WIDTH = 7
+NOTE_WIDTH = 80
 ROUNDING = 1e-9
 """Equal costs have a standard deviation of this order at most, which says nothing."""
+
+ROWS_OF_A_PAGE = 40
+"""In LaTeX: a table of more goes on on the next page."""
 
 AS_PRINTED = -1
 """For the paper's own figures: whole, or two digits after the point."""
@@ -53,6 +58,24 @@ class Table:
     detail: bool = False
 
 
+def named(tables: Sequence[Table], names: Sequence[str]) -> list[Table]:
+    """The tables of these names, in the order of the names; all of them if there are none.
+
+    Raises
+    ------
+    KbgaBenchError
+        If there is no table of a name.
+    """
+    there = {table.name: table for table in tables}
+    for name in names:
+        if name not in there:
+            raise KbgaBenchError(
+                f"--only: there is no table '{name}' of this store. Take one of: "
+                f"{', '.join(there)}."
+            )
+    return [there[name] for name in dict.fromkeys(names)] or list(tables)
+
+
 def render(table: Table, style: Format) -> str:
     """Write a table as text, whole, with a newline at its end.
 
@@ -70,46 +93,80 @@ def _csv(table: Table) -> str:
 
 
 def _plain(table: Table) -> str:
-    # Headers are broken into lines: numbers are narrower than their names.
-    headers = [
-        textwrap.fill(str(c), HEADER_WIDTH, break_long_words=False) for c in table.frame.columns
-    ]
-    note = textwrap.fill(table.note, NOTE_WIDTH)
-    return f"{table.title}\n\n{_grid(table, 'simple', headers)}\n{_below(note)}"
+    headers = [_broken(str(c)) for c in table.frame.columns]
+    height = max(map(len, headers), default=0)
+    padded = ([""] * (height - len(header)) + header for header in headers)
+    top = [list(line) for line in zip(*padded, strict=True)]
+    # As rows: tabulate would make room for two more characters in each heading.
+    cells = top + as_texts(table).to_numpy().tolist()
+    lines = tabulate(
+        cells, tablefmt="plain", disable_numparse=True, colalign=_alignment(table)
+    ).splitlines()
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    lines.insert(height, "  ".join("-" * width for width in widths))
+    title, note = (textwrap.fill(text, NOTE_WIDTH) for text in (table.title, table.note))
+    return "\n".join([title, "", *lines, _below(note)])
+
+
+def _broken(header: str) -> list[str]:
+    """A heading in lines: numbers are narrower than their names."""
+    return textwrap.wrap(header, HEADER_WIDTH, break_long_words=False, break_on_hyphens=False)
 
 
 def _markdown(table: Table) -> str:
-    headers = [str(c) for c in table.frame.columns]
-    return f"### {table.title}\n\n{_grid(table, 'pipe', headers)}\n{_below(table.note)}"
-
-
-def _grid(table: Table, layout: str, headers: list[str]) -> str:
-    frame = table.frame
-    return tabulate(
+    grid = tabulate(
         as_texts(table).to_numpy().tolist(),
-        headers=headers,
-        tablefmt=layout,
+        headers=[str(c) for c in table.frame.columns],
+        tablefmt="pipe",
         disable_numparse=True,
-        colalign=["right" if is_numeric(frame[c]) else "left" for c in frame.columns]
-        if len(frame)
-        else None,
+        colalign=_alignment(table) if len(table.frame) else None,
     )
+    return f"### {table.title}\n\n{grid}\n{_below(table.note)}"
+
+
+def _alignment(table: Table) -> list[str]:
+    return ["right" if is_numeric(table.frame[c]) else "left" for c in table.frame.columns]
 
 
 def _latex(table: Table) -> str:
     columns = "".join("r" if is_numeric(table.frame[c]) else "l" for c in table.frame.columns)
-    texts = as_texts(table)
-    body = texts.style.hide(axis="index").format(escape="latex")
-    body = body.format_index(escape="latex", axis=1)
+    body = as_texts(table).style.hide(axis="index").format(escape="latex")
+    body = body.format_index(_stacked, escape="latex", axis=1)
+    goes_on = len(table.frame) > ROWS_OF_A_PAGE
+    caption = _escaped(f"{table.title}. {table.note}".strip())
     written = body.to_latex(
         column_format=columns,
         hrules=True,
-        caption=_escaped(f"{table.title}. {table.note}".strip()),
+        caption=caption,
         label=f"tab:{table.name}",
-        position_float="centering",
+        position_float=None if goes_on else "centering",
+        environment="longtable" if goes_on else None,
     )
+    written = _small(str(written), caption, table.title) if goes_on else _fitted(str(written))
     # LaTeX's own fonts have another sign in its place.
-    return str(written).replace("<", "$<$")
+    return _PACKAGES + "\n" + written.replace("<", "$<$")
+
+
+_PACKAGES = r"% \usepackage{booktabs,graphicx,longtable}"
+
+
+def _stacked(header: object) -> str:
+    lines = r"\\".join(_broken(str(header)))
+    return rf"\shortstack{{{lines}}}"
+
+
+def _fitted(written: str) -> str:
+    """Scaled down to the width of the line, if wider."""
+    scale = r"\resizebox{\ifdim\width>\linewidth\linewidth\else\width\fi}{!}{%"
+    written = written.replace(r"\begin{tabular}", f"{scale}\n\\begin{{tabular}}")
+    return written.replace(r"\end{tabular}", "\\end{tabular}}")
+
+
+def _small(written: str, caption: str, title: str) -> str:
+    """In small letters and narrow columns, as several pages can't be scaled; one note is enough."""
+    again = rf"\caption[]{{{_escaped(title)}, continued}}"
+    written = written.replace(rf"\caption[]{{{caption}}}", again)
+    return f"{{\\scriptsize\\setlength{{\\tabcolsep}}{{3pt}}\n{written}}}\n"
 
 
 _RENDERERS: dict[Format, Callable[[Table], str]] = {

@@ -10,9 +10,9 @@ from suite.report.newest import newest
 from suite.report.paper_tables import COST_NOTE, paper_tables
 from suite.report.ranking import ranking_tables
 from suite.report.simulated import is_simulated, simulated_tables
-from suite.report.statistics_tables import statistics_tables
+from suite.report.statistics_tables import check_reference, statistics_tables
 from suite.report.studies import study_tables
-from suite.report.summary import summary_table
+from suite.report.summary import summary_tables
 from suite.report.table import Table
 from suite.report.targets import target_tables
 from suite.report.verdicts import Rows, verdict_table
@@ -28,8 +28,9 @@ def all_tables(
     *,
     simulations: pd.DataFrame | None = None,
     replans: pd.DataFrame | None = None,
+    reference: str | None = None,
 ) -> list[Table]:
-    """The summary, the paper's comparisons, the studies, and how the planners compare.
+    """The summary, the studies, how the planners compare, and the paper's comparisons.
 
     Those that these runs can't answer are left out.
 
@@ -45,11 +46,19 @@ def all_tables(
     simulations, replans : DataFrame, optional
         As :func:`suite.store.read_simulations` and :func:`suite.store.read_replans` give them.
         Without them there are no tables of simulated runs.
+    reference : str, optional
+        The planner that the statistics compare the others with; default: kbga, or else the first.
 
     Returns
     -------
     list of Table
+
+    Raises
+    ------
+    KbgaBenchError
+        If no run is of the reference.
     """
+    check_reference(runs["variant"], reference)
     kept = newest(runs)
     left_out = len(runs) - len(kept)
     driven = kept[is_simulated(kept)]
@@ -60,27 +69,34 @@ def all_tables(
     answers = verdict_table(Rows(kept, driven, _or_empty(first), _or_empty(replans)))
     told = [] if answers is None else [answers]
     if kept.empty and moving:
-        return [*moving, *told]
-    return [
-        summary_table(kept, left_out),
-        *moving,
-        *told,
-        *paper_tables(kept),
-        *ablation_tables(kept, COST_NOTE),
-        *study_tables(kept, first),
-        *([] if events is None else measured_tables(steps_of(kept, events))),
-    ]
+        return _paper_last([*moving, *told])
+    measured = [] if events is None else measured_tables(steps_of(kept, events), reference)
+    return _paper_last(
+        [
+            *summary_tables(kept, left_out),
+            *moving,
+            *study_tables(kept, first),
+            *ablation_tables(kept, COST_NOTE),
+            *measured,
+            *told,
+            *paper_tables(kept),
+        ]
+    )
+
+
+def _paper_last(tables: list[Table]) -> list[Table]:
+    return sorted(tables, key=lambda table: table.name.startswith("paper-"))
 
 
 def _or_empty(frame: pd.DataFrame | None) -> pd.DataFrame:
     return pd.DataFrame() if frame is None else frame
 
 
-def measured_tables(steps: Steps) -> list[Table]:
-    """Fixed targets and budgets, the ranking and the statistics of runs as step functions."""
+def measured_tables(steps: Steps, reference: str | None = None) -> list[Table]:
+    """The ranking, fixed targets and budgets, and the statistics of runs as step functions."""
     return [
+        *ranking_tables(steps),
         *target_tables(steps),
         *budget_tables(steps),
-        *ranking_tables(steps),
-        *statistics_tables(steps, np.random.default_rng(BOOTSTRAP_SEED)),
+        *statistics_tables(steps, np.random.default_rng(BOOTSTRAP_SEED), reference),
     ]

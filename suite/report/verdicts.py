@@ -100,6 +100,8 @@ class Rows:
 def verdict_table(rows: Rows) -> Table | None:
     """The figures of the paper that these runs answer, with ours; None if they answer none.
 
+    Settings alone, as those of any run of our KBGA, are no answer.
+
     Parameters
     ----------
     rows : Rows
@@ -108,7 +110,7 @@ def verdict_table(rows: Rows) -> Table | None:
     frame = pd.DataFrame(
         [_as_row(figure, given) for figure, given in found if given.word != NO_DATA]
     )
-    if frame.empty:
+    if all(figure.statistic == "setting" for figure, given in found if given.word != NO_DATA):
         return None
     counts = frame["verdict"].value_counts()
     words = (AGREES, BETTER, WORSE, NOT_COMPARABLE)

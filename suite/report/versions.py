@@ -1,11 +1,11 @@
 """Two stores of the same matrix, before and after a change: what got better, what got worse.
 
 Each measure of each scene and planner is one question; a verdict needs a difference that Mann and
-Whitney's test, corrected by Holm for the number of questions of that measure, finds at 5 %. Runs
-that failed count as the worst.
+Whitney's test, corrected by Holm for the number of questions of that measure, finds at 5 %. A
+difference that is not shown is not called none. Runs without a path count as the worst.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from suite.report.few_runs import too_few
 from suite.report.newest import newest
 from suite.report.statistics import LEVEL, REPETITIONS, holm, mann_whitney
 from suite.report.summary import SUCCESSES
@@ -22,12 +23,13 @@ PLACE = ["scene", "query", "world", "variant"]
 
 BOOTSTRAP_SEED = 2026
 
-BETTER, WORSE, SAME = "better", "worse", "same"
+BETTER, WORSE, NOT_SHOWN, SAME = "better", "worse", "not shown", "same"
 
 NOTE = (
     "change: of the mean over the runs that have the measure, new over old, with its 95 % interval "
-    "of a bootstrap over both. p: Mann-Whitney over all runs, failures as the worst, corrected by "
-    "Holm within each measure. A verdict needs p below 0.05."
+    "of a bootstrap over both. p: Mann-Whitney over all runs, those without a path as the worst, "
+    "corrected by Holm within each measure. better, worse: p is below 0.05. not shown: it is not; "
+    "there may be a difference or none. same: the very same values on both sides."
 )
 TIME_NOTE = (
     " Times come from {where}: their verdicts do not count for the exit code, unless asked for."
@@ -62,16 +64,34 @@ class Changes:
     """What came of a comparison.
 
     table : a row for each scene, planner and measure.
-    worse, better : numbers of the verdicts that count.
+    verdicts : how often each came out, among the comparisons that count.
+    too_few : says so where there are too few runs for any difference to be shown.
     """
 
     table: Table
-    worse: int
-    better: int
+    verdicts: Mapping[str, int]
+    too_few: str = ""
+
+    @property
+    def worse(self) -> int:
+        """Number of measures that count and are shown to be worse."""
+        return self.verdicts.get(WORSE, 0)
+
+    @property
+    def better(self) -> int:
+        """Number of measures that count and are shown to be better."""
+        return self.verdicts.get(BETTER, 0)
 
     def summary(self) -> str:
-        """One line."""
-        return f"{self.better} better, {self.worse} worse, of {len(self.table.frame)} comparisons."
+        """Counts of the verdicts; where there are too few runs, a second line that says so."""
+        words = [BETTER, WORSE, *(w for w in (NOT_SHOWN, SAME) if w in self.verdicts)]
+        counts = ", ".join(f"{self.verdicts.get(word, 0)} {word}" for word in words)
+        counted = sum(self.verdicts.values())
+        rest = len(self.table.frame) - counted
+        times = f"; {rest} of times are not counted" if rest else ""
+        return "\n".join(
+            filter(None, [f"{counts}, of {counted} comparisons{times}.", self.too_few])
+        )
 
 
 def compare_versions(
@@ -95,18 +115,16 @@ def compare_versions(
     """
     before, after = (dict(_groups(runs)) for runs in (old, new))
     common = [place for place in before if place in after]
-    rows = [row for measure in MEASURES for row in _rows(measure, common, before, after, rng)]
+    scores = {measure: _scored(measure, common, before, after) for measure in MEASURES}
+    rows = [row for measure, pairs in scores.items() for row in _rows(measure, pairs, rng)]
     frame = pd.DataFrame(rows, columns=list(_EMPTY) if not rows else None)
     counted = frame if with_times else frame[~frame["measure"].isin(_TIMES)]
     note = NOTE + _left_out(before, after, common)
     if not with_times:
         same = set(old["host"]) == set(new["host"])
         note += TIME_NOTE.format(where="one host" if same else "different hosts")
-    return Changes(
-        Table("versions", "What changed", frame, note),
-        int((counted["verdict"] == WORSE).sum()),
-        int((counted["verdict"] == BETTER).sum()),
-    )
+    counts = {str(word): int(n) for word, n in counted["verdict"].value_counts().items()}
+    return Changes(Table("versions", "What changed", frame, note), counts, _too_few(scores))
 
 
 _TIMES = [measure.name for measure in MEASURES if measure.is_time]
@@ -121,26 +139,50 @@ def _groups(runs: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]
         yield tuple(part if isinstance(part, str) else "" for part in place), group
 
 
-def _rows(
+Places = list[tuple[str, ...]]
+Pairs = dict[tuple[str, ...], tuple[NDArray[np.float64], NDArray[np.float64]]]
+"""Scores of before and after, by the scene and planner that they are of."""
+
+
+def _scored(
     measure: Measure,
-    places: list[tuple[str, ...]],
+    places: Places,
     before: dict[tuple[str, ...], pd.DataFrame],
     after: dict[tuple[str, ...], pd.DataFrame],
-    rng: np.random.Generator,
-) -> list[dict[str, Any]]:
-    pairs = [(_scores(before[place], measure), _scores(after[place], measure)) for place in places]
-    known = [i for i, pair in enumerate(pairs) if all(len(scores) for scores in pair)]
-    p_values = holm(np.array([mann_whitney(*pairs[i]) for i in known])) if known else np.array([])
+) -> Pairs:
+    """The scores of one measure, where both stores have some."""
+    pairs = {
+        place: (_scores(before[place], measure), _scores(after[place], measure)) for place in places
+    }
+    return {place: pair for place, pair in pairs.items() if all(map(len, pair))}
+
+
+def _rows(measure: Measure, pairs: Pairs, rng: np.random.Generator) -> list[dict[str, Any]]:
+    p_values = holm(np.array([mann_whitney(*pair) for pair in pairs.values()]))
     return [
-        {**_names(places[i]), "measure": measure.name}
-        | _change(*pairs[i], rng)
-        | {"p": p, "verdict": _verdict(*pairs[i], p)}
-        for i, p in zip(known, p_values.tolist(), strict=True)
+        {**_names(place), "measure": measure.name}
+        | _change(*pair, rng)
+        | {"p": p, "verdict": _verdict(*pair, p)}
+        for (place, pair), p in zip(pairs.items(), p_values.tolist(), strict=True)
     ]
 
 
+def _too_few(scores: Mapping[Measure, Pairs]) -> str:
+    """Where no difference can be shown; with the names of the measures, if not in any of them."""
+    told: dict[str, list[str]] = {}
+    for measure, pairs in scores.items():
+        sentence = too_few([(len(one), len(other)) for one, other in pairs.values()])
+        if pairs:
+            told.setdefault(sentence, []).append(measure.name)
+    return " ".join(
+        sentence if len(told) == 1 else f"{', '.join(names)}: {sentence}"
+        for sentence, names in told.items()
+        if sentence
+    )
+
+
 def _scores(runs: pd.DataFrame, measure: Measure) -> NDArray[np.float64]:
-    """The measure of each run; infinite for one that failed, missing for one that has none."""
+    """The measure of each run; infinite for one without a path, missing for one that has none."""
     values = measure.factor * runs[measure.column].astype("float64")
     if measure.column == "cost":
         # The right answer that there is no path has no cost, and there is none better.
@@ -176,7 +218,7 @@ def _resampled_means(scores: NDArray[np.float64], rng: np.random.Generator) -> A
 
 def _verdict(old: NDArray[np.float64], new: NDArray[np.float64], p: float) -> str:
     if p >= 1.0 - LEVEL:
-        return SAME
+        return SAME if np.array_equal(np.sort(old), np.sort(new)) else NOT_SHOWN
     wins = (new[:, None] < old).mean() - (new[:, None] > old).mean()
     return BETTER if wins > 0 else WORSE
 
@@ -186,7 +228,7 @@ def _names(place: tuple[str, ...]) -> dict[str, str]:
     return {"scene": f"{scene}, {world}" if world else scene, "planner": variant}
 
 
-def _left_out(before: Any, after: Any, common: list[tuple[str, ...]]) -> str:
+def _left_out(before: Any, after: Any, common: Places) -> str:
     missing = [
         f"{len(place) - len(common)} scenes and planners are in the {which} store only"
         for which, place in (("old", before), ("new", after))

@@ -313,12 +313,12 @@ def test_run_keeps_rows_and_says_how_it_ended(kbga_bench, matrix_file, tmp_path)
 
 def test_tables_in_every_format(kbga_bench, filled, tmp_path):
     text = kbga_bench("tables", filled).out
-    assert "success" in text
+    assert "4 runs: 2 solved, 2 without path, of these 0 failed." in text
     assert "Median time (ms) to come within a gap of the optimum" in text
     assert "Median gap (%) after a fixed wall time" in text
     # The rows behind them are too many to be read.
     assert "What it takes to come" not in text
-    assert "written with --output: fixed-target-rows, fixed-budget-rows" in text
+    assert "with --only or --output: summary-rows, ranking-rows, fixed-target-rows" in text
     csv = kbga_bench("tables", filled, "--format", "csv").out
     assert csv.startswith("scene,planner,runs,solved")
     assert "scene,planner,target (%),runs,reached,reached (%),time median (ms)" in csv
@@ -326,6 +326,28 @@ def test_tables_in_every_format(kbga_bench, filled, tmp_path):
     assert r"\begin{tabular}" in kbga_bench("tables", filled, "--format", "latex").out
     kbga_bench("tables", filled, "--format", "markdown", "--output", tmp_path / "t")
     assert (tmp_path / "t" / "summary.md").exists()
+    assert (tmp_path / "t" / "summary-rows.md").exists()
+
+
+def test_of_the_tables_those_asked_for_are_printed_also_the_long_ones(kbga_bench, filled):
+    text = kbga_bench("tables", filled, "--only", "summary-rows", "--only", "summary").out
+    assert text.startswith("All measures per scene and planner")
+    assert "Results per scene and planner" in text
+    assert "Median" not in text
+
+
+def test_what_to_compare_with_and_which_tables_can_be_chosen_only_of_what_is_there(
+    kbga_bench, error_of, filled, tmp_path
+):
+    only = ("--only", "statistics")
+    text = kbga_bench("tables", filled, *only, "--reference", "gives-up").out
+    assert "probability that gives-up is better" in text
+    assert "no table 'x' of this store. Take one of: summary" in error_of(
+        "tables", filled, "--only", "x"
+    )
+    for command in (("tables", filled), ("report", filled, "-o", tmp_path / "r.html")):
+        message = error_of(*command, "--reference", "x")
+        assert "no planner 'x' in the store. Take one of: wanderer" in message
 
 
 def test_results_hold_tables_rows_figures_and_the_manifest(kbga_bench, filled, tmp_path):

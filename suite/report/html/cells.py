@@ -17,10 +17,12 @@ class Cell:
 
     text : what is read.
     number : what it is sorted by; None if that is the text.
+    style : CSS of this cell alone.
     """
 
     text: str
     number: float | None
+    style: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -64,13 +64,21 @@ class Evidence:
         return self.current[is_simulated(self.current)]
 
 
-def read_evidence(store: Path) -> Evidence:
+def read_evidence(store: Path, reference: str | None = None) -> Evidence:
     """Read a store.
+
+    Parameters
+    ----------
+    store : Path
+    reference : str, optional
+        The planner that the statistics compare the others with; default: kbga, or else the first.
 
     Raises
     ------
     StoreError
         If it can't be read.
+    KbgaBenchError
+        If no run is of the reference.
     """
     runs, events = read_runs(store), read_events(store)
     current = newest(runs)
@@ -80,7 +88,7 @@ def read_evidence(store: Path) -> Evidence:
         current=current,
         steps=steps_of(current[~is_simulated(current)], events),
         planners=numbered(current["variant"]),
-        tables=_tables(store, runs, events),
+        tables=_tables(store, runs, events, reference),
         paths=read_paths(store),
         snapshots=read_snapshots(store),
         wanted=read_wanted(store),
@@ -89,7 +97,9 @@ def read_evidence(store: Path) -> Evidence:
     )
 
 
-def _tables(store: Path, runs: pd.DataFrame, events: pd.DataFrame) -> list[Table]:
+def _tables(
+    store: Path, runs: pd.DataFrame, events: pd.DataFrame, reference: str | None
+) -> list[Table]:
     if runs.empty:
         return []
     return all_tables(
@@ -98,4 +108,5 @@ def _tables(store: Path, runs: pd.DataFrame, events: pd.DataFrame) -> list[Table
         events,
         simulations=read_simulations(store),
         replans=read_replans(store),
+        reference=reference,
     )

@@ -1,4 +1,4 @@
-"""The runs that did not end well, with their reasons."""
+"""The runs without path, with their reasons; first those that failed."""
 
 from typing import Any
 
@@ -6,16 +6,17 @@ import pandas as pd
 
 from suite.planner import PlanStatus
 from suite.report.compared import places
-from suite.report.summary import SUCCESSES
+from suite.report.summary import FAILURES, SUCCESSES
 from suite.report.table import Table
 
 REASONS_AT_MOST = 30
 """Told in full; of more there is the last line."""
 
 NOTE = (
-    "A row for each planner, status and last line of the reason. Example: the key of one such row; "
-    "`kbga-bench rerun STORE KEY` repeats it. exhausted: the budget or the planner's own stop "
-    "criterion ended the run without a path, which is no fault of the program."
+    "A row for each planner, status and last line of the reason; first those that failed, which "
+    "`kbga-bench run --only-failed` does again. exhausted: the budget or the planner's own stop "
+    "criterion ended the run without path, which is no fault of the program; nor is refused. "
+    "Example: the key of one such row; `kbga-bench rerun STORE KEY` repeats it."
 )
 
 WITHOUT_REASON = "no path within the budget or the planner's own stop criterion"
@@ -42,7 +43,8 @@ def failures_table(runs: pd.DataFrame) -> Table:
     ]
     frame = pd.DataFrame(rows, columns=["planner", "status", "runs", "scenes", "reason", "example"])
     frame = frame.sort_values("runs", ascending=False, kind="stable")
-    return Table("failures", "Runs that did not end well, by reason", frame, NOTE)
+    frame = frame.sort_values("status", key=lambda status: ~status.isin(FAILURES), kind="stable")
+    return Table("failures", "Runs without path, by reason", frame, NOTE)
 
 
 def full_reasons(runs: pd.DataFrame) -> list[tuple[str, str]]:
@@ -64,15 +66,15 @@ def full_reasons(runs: pd.DataFrame) -> list[tuple[str, str]]:
 
 
 def _groups(runs: pd.DataFrame) -> Any:
-    failed = runs.assign(place=places(runs))[~runs["status"].isin(SUCCESSES)]
-    last = failed["reason"].fillna("").astype(str).str.strip().str.rsplit("\n", n=1).str[-1]
+    lost = runs.assign(place=places(runs))[~runs["status"].isin(SUCCESSES)]
+    last = lost["reason"].fillna("").astype(str).str.strip().str.rsplit("\n", n=1).str[-1]
     missing = (
-        failed["status"]
-        .where(failed["status"] != PlanStatus.EXHAUSTED, WITHOUT_REASON)
+        lost["status"]
+        .where(lost["status"] != PlanStatus.EXHAUSTED, WITHOUT_REASON)
         .where(lambda text: text == WITHOUT_REASON, "no reason was given")
     )
-    failed = failed.assign(last=last.where(last != "", missing))
-    return failed.groupby(["variant", "status", "last"], sort=False)
+    lost = lost.assign(last=last.where(last != "", missing))
+    return lost.groupby(["variant", "status", "last"], sort=False)
 
 
 def _some(names: "pd.Series[str]") -> str:

@@ -8,13 +8,17 @@ import pandas as pd
 
 from suite.planner import PlanStatus
 from suite.report.compared import at_a_glance
+from suite.report.html.cells import Sheet, sheet
 from suite.report.html.evidence import Evidence
+from suite.report.html.shades import shaded
+from suite.report.panels import LEAST_GAP
 from suite.report.summary import summary
 from suite.report.table import Table
 
 GAP_NOTE = (
     "Mean gap of the paths found to the exact shortest one, per cent: 0 is optimal. In brackets "
-    "how many runs found a path, where not all did; a mean over few of the runs flatters."
+    "how many runs found a path, where not all did; a mean over few of the runs flatters. Darker "
+    "is worse, on a logarithmic scale."
 )
 
 
@@ -33,15 +37,26 @@ def headline(evidence: Evidence) -> str:
     )
 
 
-def overview_tables(evidence: Evidence) -> list[Table]:
+def overview_sheets(evidence: Evidence) -> list[Sheet]:
     """How runs ended, and the mean gap of each planner in each scene."""
     if evidence.runs.empty:
         return []
-    tables = [Table("status", "How the runs ended", _by_status(evidence.runs))]
+    sheets = [sheet(Table("status", "How the runs ended", _by_status(evidence.runs)))]
     if not evidence.steps.runs.empty and not np.isnan(evidence.steps.optimum).all():
-        glanced = at_a_glance(summary(evidence.steps.runs), ["planner"], _gap)
-        tables.append(Table("gaps", "Mean gap to the optimum (%)", glanced, GAP_NOTE))
-    return tables
+        sheets.append(_gaps(summary(evidence.steps.runs)))
+    return sheets
+
+
+def _gaps(found: pd.DataFrame) -> Sheet:
+    """Mean gaps, on the colours of their sizes."""
+    texts, numbers = (at_a_glance(found, ["planner"], cell) for cell in (_gap, _number))
+    table = Table("gaps", "Mean gap to the optimum (%)", texts, GAP_NOTE)
+    numbers = numbers.drop(columns="planner").apply(pd.to_numeric, errors="coerce")
+    return shaded(sheet(table), numbers, LEAST_GAP)
+
+
+def _number(row: Mapping[Any, Any]) -> str:
+    return str(row["gap mean (%)"])
 
 
 def _by_status(runs: pd.DataFrame) -> pd.DataFrame:

@@ -20,7 +20,7 @@ from suite.report.html.drives import drive_sheets
 from suite.report.html.evidence import Evidence, read_evidence
 from suite.report.html.failures import failures_table, full_reasons
 from suite.report.html.missing import missing_table
-from suite.report.html.overview import headline, overview_tables
+from suite.report.html.overview import headline, overview_sheets
 from suite.report.html.player import played_runs
 from suite.report.html.provenance import provenance_tables
 from suite.report.html.scenes import scene_pictures
@@ -29,7 +29,7 @@ SUFFIXES = (".html", ".htm")
 SCRIPTS = ("tables.js", "charts.js", "player.js")
 
 
-def write_report(store: Path, file: Path) -> None:
+def write_report(store: Path, file: Path, *, reference: str | None = None) -> None:
     """Write the report of a store.
 
     Parameters
@@ -38,17 +38,19 @@ def write_report(store: Path, file: Path) -> None:
         It is only read.
     file : Path
         Replaced if it is there.
+    reference : str, optional
+        The planner that the statistics compare the others with; default: kbga, or else the first.
 
     Raises
     ------
     KbgaBenchError
-        If the store can't be read or the file can't be written.
+        If the store can't be read, the file can't be written, or no run is of the reference.
     """
     if file.suffix.lower() not in SUFFIXES:
         raise KbgaBenchError(f"{file}: a report is {' or '.join(SUFFIXES)}. Name such a file.")
     if not file.parent.is_dir():
         raise KbgaBenchError(f"{file}: there is no folder {file.parent}. Make it first.")
-    page = render_report(read_evidence(store))
+    page = render_report(read_evidence(store, reference))
     try:
         file.write_text(page, encoding="utf-8")
     except OSError as error:
@@ -75,7 +77,7 @@ def render_report(evidence: Evidence) -> str:
         .render(
             store=evidence.store.name,
             headline=headline(evidence),
-            overview=[sheet(table) for table in overview_tables(evidence)],
+            overview=overview_sheets(evidence),
             pictures=pictures,
             pictures_left_out=pictures_left_out,
             charts=charts,

@@ -16,6 +16,7 @@ from suite.report.statistics import (
     mann_whitney,
     probability_better,
     probability_interval,
+    smallest_p,
 )
 
 # Aesop's races, the textbook example of Mann and Whitney's test: places of 6 tortoises and 6 hares.
@@ -85,6 +86,22 @@ def test_mann_and_whitneys_p_value_is_scipys_and_1_without_any_difference():
     assert mann_whitney(a, b) == stats.mannwhitneyu(a, b).pvalue
     assert mann_whitney(np.ones(3), np.ones(5)) == 1.0
     assert mann_whitney(np.full(20, np.inf), np.arange(20.0)) < 1e-6
+
+
+def test_ties_in_small_samples_are_counted_and_not_approximated():
+    # Twice the share of the 10 ways to choose 3 of 5 that are as extreme on this side.
+    assert mann_whitney(np.zeros(3), np.ones(2)) == pytest.approx(2 / 10)
+    assert mann_whitney(np.zeros(1), np.ones(5)) == pytest.approx(2 / 6)
+    assert mann_whitney(np.array([0.0, 0.0, 1.0]), np.array([1.0, 1.0])) == pytest.approx(
+        2 * 3 / 10
+    )
+
+
+@given(st.lists(st.integers(0, 3), min_size=10, max_size=10))
+def test_no_p_value_is_smaller_than_the_smallest(drawn):
+    a, b = np.array(drawn[:4], dtype=float), np.array(drawn[4:], dtype=float)
+    assert mann_whitney(a, b) >= smallest_p(4, 6) * (1.0 - 1e-12)
+    assert smallest_p(4, 6) == pytest.approx(2 / 210)
 
 
 def test_friedman_says_nothing_of_two_planners_of_one_task_or_of_equals():

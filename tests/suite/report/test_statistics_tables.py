@@ -37,29 +37,32 @@ def both():
     return scores_by_planner(steps(*records))
 
 
-def test_scores_are_gaps_by_run_and_scene_and_failures_are_infinite(both):
+def test_scores_are_gaps_by_run_and_scene_and_those_without_path_are_infinite(both):
     scenes, scores = both
     assert scenes == list(SCENES)
     assert scores["rrt"][:, 0] == pytest.approx([0.05, 0.06, 0.07, np.inf])
     assert scores["rrt"][:, 1].tolist() == [0.0] * 4
 
 
-def test_a_failed_run_is_worse_than_any_path_and_a_tie_counts_half(both):
-    frame = planner_statistics(both[1], np.random.default_rng(0)).set_index("planner")
-    assert frame.loc["rrt", "kbga better"] == 0.75
-    assert (frame.loc["rrt", "kbga better low"], frame.loc["rrt", "kbga better high"]) == (
-        0.75,
-        0.75,
-    )
-    assert frame.loc["rrt", ["runs", "failed"]].tolist() == [8, 1]
+def test_a_run_without_path_is_worse_than_any_path_and_a_tie_counts_half(both):
+    frame = planner_statistics(both[1], np.random.default_rng(0), "kbga").set_index("planner")
+    better = "P(kbga better)"
+    assert frame.loc["rrt", [better, f"{better} low", f"{better} high"]].tolist() == [0.75] * 3
+    assert frame.loc["rrt", ["runs", "without path"]].tolist() == [8, 1]
     # The middle half of 0, 0, 0, 0, 5, 6, 7 and infinity.
     assert frame.loc["rrt", "gap IQM (%)"] == pytest.approx(11.0 / 4)
-    assert np.isnan(frame.loc["kbga", "kbga better"])
+    assert np.isnan(frame.loc["kbga", better])
+
+
+def test_another_planner_can_be_the_reference(both):
+    frame = planner_statistics(both[1], np.random.default_rng(0), "rrt").set_index("planner")
+    assert frame.loc["kbga", "P(rrt better)"] == 0.25
+    assert scene_statistics(*both, "rrt")["P(rrt better)"].tolist() == [0.0, 0.5]
 
 
 def test_scene_by_scene_p_values_are_corrected_for_all_of_them(both):
-    frame = scene_statistics(*both).set_index("scene")
-    assert frame["kbga better"].to_dict() == {"zigzag": 1.0, "maze": 0.5}
+    frame = scene_statistics(*both, "kbga").set_index("scene")
+    assert frame["P(kbga better)"].to_dict() == {"zigzag": 1.0, "maze": 0.5}
     # All 4 of kbga before all 4 of the other: two of the 70 orders are as far apart.
     assert frame["p"].to_dict() == pytest.approx({"zigzag": 2 / 70, "maze": 1.0})
     assert frame["Holm's p"].to_dict() == pytest.approx({"zigzag": 4 / 70, "maze": 1.0})
@@ -73,14 +76,32 @@ def test_over_a_quarter_of_failures_there_is_no_mean_gap():
     assert "inf" not in line
 
 
-def test_planners_are_compared_with_kbga_or_else_with_the_first():
-    assert (
-        "Probability that b is better"
-        in tables(*ending("b", [101.0]), *ending("a", [102.0]))[1].title
-    )
-    assert (
-        "Probability that kbga is" in tables(*ending("a", [1.0]), *ending("kbga", [1.0]))[1].title
-    )
+def test_planners_are_compared_with_kbga_or_else_with_the_first_or_with_whom_one_asks_for():
+    def title(*planners, **options):
+        records = [record for name in planners for record in ending(name, [101.0])]
+        found = statistics_tables(steps(*records), np.random.default_rng(0), **options)
+        return found[1].title
+
+    assert "Probability that b is better than the planner of the row" in title("b", "a")
+    assert "Probability that kbga is better" in title("a", "kbga")
+    assert "Probability that a is better" in title("a", "kbga", reference="a")
+
+
+def test_two_runs_each_have_no_p_values_at_a_glance_and_the_note_says_why():
+    records = [*ending("kbga", [101.0, 102.0]), *ending("rrt", [105.0, 106.0])]
+    _, glance, rows = tables(*records)
+    assert glance.frame["zigzag"].tolist() == ["1.00"]
+    for table in (glance, rows):
+        assert "Too few runs: with 2 against 2 and 1 comparison, the smallest p" in table.note
+        assert "4 runs on each side would do" in table.note
+    assert rows.frame["p"].tolist() == pytest.approx([2 / 6])
+
+
+def test_runs_enough_have_their_p_values_at_a_glance():
+    records = [*ending("kbga", [101.0 + i for i in range(4)]), *ending("rrt", [None] * 4)]
+    _, glance, _ = tables(*records)
+    assert glance.frame["zigzag"].tolist() == ["1.00 (0.029)"]
+    assert "Too few" not in glance.note
 
 
 def test_one_planner_has_its_gap_and_one_seed_no_interval():

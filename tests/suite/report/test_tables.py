@@ -3,10 +3,12 @@ import statistics
 import pandas as pd
 import pytest
 
+from suite.errors import KbgaBenchError
+from suite.harness import run as harness
 from suite.planner import PlanStatus
 from suite.report.paper_tables import paper_static, paper_table_1, paper_tables
-from suite.report.summary import summary
-from suite.report.table import Format, Table, render
+from suite.report.summary import FAILURES, NARROW, SUCCESSES, summary, summary_tables
+from suite.report.table import Format, Table, named, render
 from suite.report.tables import all_tables
 from suite.store import open_store, read_events, read_runs
 from tests.suite.harness.records import make_cell, make_record
@@ -58,7 +60,35 @@ def test_means_and_deviations_are_over_solved_runs_only(runs_of):
     assert row["gen to best mean"] == pytest.approx(10.0)
     assert row["time to best mean (ms)"] == pytest.approx(30.0)
     assert row["time total mean (ms)"] == pytest.approx(50.0)
-    assert row["otherwise"] == "1 exhausted"
+    assert (row["without path"], row["failed"], row["otherwise"]) == (1, 0, "1 exhausted")
+    assert row["gap median (%)"] == pytest.approx(20.0)
+
+
+def test_failed_are_the_runs_that_are_run_again_and_no_others(runs_of):
+    ends = [status for status in PlanStatus if status is not PlanStatus.SOLVED]
+    runs = runs_of(
+        solved(110.0),
+        *(make_record(make_cell(seed=i), status=status) for i, status in enumerate(ends, start=1)),
+    )
+    (row,) = summary(runs).to_dict("records")
+    assert row["failed"] == len(harness.FAILURES) == 5
+    # The proof that there is no path is a success; exhausted and refused ended properly.
+    assert (row["solved"], row["without path"]) == (2, 7)
+    assert set(FAILURES) == {str(status) for status in harness.FAILURES}
+    assert set(SUCCESSES) == {str(status) for status in harness.SUCCESSES}
+    note = summary_tables(runs)[0].note
+    assert note.startswith("9 runs: 2 solved, 7 without path, of these 5 failed.")
+    assert all(status in note for status in FAILURES)
+
+
+def test_the_summary_is_narrow_and_the_rows_behind_it_have_all_columns(runs_of):
+    names = ("a-planner-with-a-long-name", "kbga")
+    runs = runs_of(*(solved(15000.0, variant=name, wall_s=600.0) for name in names))
+    few, all_ = summary_tables(runs)
+    assert max(map(len, render(few, Format.TABLE).splitlines())) <= 100
+    assert list(few.frame.columns) == NARROW
+    assert set(NARROW) < set(all_.frame.columns)
+    assert all_.detail
 
 
 def test_a_proof_that_there_is_no_path_is_a_success_without_a_cost(runs_of):
@@ -73,7 +103,7 @@ def test_one_run_has_no_deviation(runs_of):
 
 def test_an_empty_store_has_an_empty_summary(runs_of):
     assert summary(runs_of()).empty
-    assert len(all_tables(runs_of())) == 1
+    assert [t.name for t in all_tables(runs_of())] == ["summary", "summary-rows"]
 
 
 def test_rows_of_a_scene_that_changed_are_left_out_and_counted(runs_of):
@@ -178,24 +208,87 @@ def test_latex_is_escaped_and_has_caption_and_label(table):
     assert r"\begin{tabular}{lrr}" in text
 
 
-def test_the_new_tables_come_last_and_the_same_rows_give_the_same_bytes(runs_of, tmp_path):
+@pytest.fixture
+def every_table(runs_of, tmp_path):
+    """Of two planners on the paper's scene, twice."""
     when = {"started_at": "2026-01-01T00:00:00"}
     runs = runs_of(
         *(solved(156.0 + seed, seed=seed, **when) for seed in range(2)),
         *(exhausted(seed=seed, **when) for seed in range(2)),
     )
     events = read_events(tmp_path / "s.db")
-    one, two = (all_tables(runs, events=events) for _ in range(2))
-    names = [table.name for table in one]
-    assert names[-4:] == [
-        "ranking-rows",
-        "statistics",
-        "statistics-scenes",
-        "statistics-scenes-rows",
-    ]
-    assert names.index("paper-static") < names.index("fixed-target")
-    assert [render(t, Format.CSV) for t in one] == [render(t, Format.CSV) for t in two]
-    assert not set(names[-4:]) & {table.name for table in all_tables(runs)}
+    return [all_tables(runs, events=events) for _ in range(2)]
+
+
+def test_the_summary_comes_first_then_the_ranking_and_the_paper_last(every_table):
+    names = [table.name for table in every_table[0]]
+    assert names[0] == "summary"
+    assert names.index("ranking") < names.index("fixed-target") < names.index("statistics")
+    assert names[-3:] == ["paper-figures", "paper-table-1", "paper-static"]
+
+
+def test_the_same_rows_give_the_same_bytes(every_table):
+    one, two = ([render(t, Format.CSV) for t in tables] for tables in every_table)
+    assert one == two
+
+
+def test_no_two_tables_have_the_same_name_or_title(every_table):
+    names, titles = zip(*((t.name, t.title) for t in every_table[0]), strict=True)
+    assert len(set(names)) == len(names) > 10
+    assert len(set(titles)) == len(titles)
+
+
+def test_without_events_there_is_no_ranking_and_there_are_no_statistics(runs_of):
+    names = {table.name for table in all_tables(runs_of(solved(156.0), exhausted()))}
+    assert not names & {"ranking", "statistics", "fixed-target"}
+
+
+def test_settings_of_our_own_are_no_answer_to_the_paper(runs_of):
+    population = '{"population_size": 50}'
+    runs = runs_of(solved(10.0, scene="mine")).assign(settings=population)
+    assert "paper-figures" not in [table.name for table in all_tables(runs)]
+    runs = runs_of(solved(156.0, scene="zigzag")).assign(settings=population)
+    (figures,) = (table.frame for table in all_tables(runs) if table.name == "paper-figures")
+    assert "population_size" in set(figures["figure"])
+
+
+def test_a_reference_that_nobody_ran_is_refused_with_the_names_that_there_are(runs_of):
+    with pytest.raises(KbgaBenchError, match=r"no planner 'rrt' .* Take one of: kbga, plain-ga"):
+        all_tables(runs_of(solved(156.0), exhausted()), reference="rrt")
+
+
+def test_tables_are_chosen_by_name_and_an_unknown_name_is_refused(table):
+    other = Table("other", "Other", table.frame)
+    assert named([table, other], []) == [table, other]
+    assert named([table, other], ["other", "costs", "other"]) == [other, table]
+    with pytest.raises(KbgaBenchError, match=r"no table 'cost' .* Take one of: costs, other"):
+        named([table, other], ["cost"])
+
+
+def test_a_heading_takes_no_more_room_than_its_longest_word():
+    frame = pd.DataFrame({"gap": [1.0], "planner": ["a"], "cost mean (%)": [100.0]})
+    text = render(Table("t", "T", frame), Format.TABLE)
+    assert text == (
+        "T\n\n                 cost\n                 mean\n gap  planner     (%)\n"
+        "----  -------  ------\n1.00  a        100.00\n"
+    )
+
+
+def test_a_table_without_rows_has_its_headings():
+    frame = pd.DataFrame(columns=["scene", "planner"])
+    assert "scene  planner\n-----  -------" in render(Table("t", "T", frame), Format.TABLE)
+
+
+def test_in_latex_what_is_too_wide_is_scaled_and_what_is_too_long_goes_on(table):
+    text = render(table, Format.LATEX)
+    assert r"\resizebox{\ifdim\width>\linewidth\linewidth\else\width\fi}{!}{%" in text
+    assert r"\shortstack{cost\\mean}" in text
+    frame = pd.concat([table.frame] * 30)
+    text = render(Table("long", "Costs", frame, "A note."), Format.LATEX)
+    assert r"\begin{longtable}{lrr}" in text
+    assert text.count("A note.") == 1
+    assert r"\caption[]{Costs, continued}" in text
+    assert text.count("{") == text.count("}")
 
 
 def test_an_infinite_number_is_printed_in_words():

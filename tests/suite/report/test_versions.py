@@ -24,8 +24,8 @@ def runs_of(tmp_path):
     return read
 
 
-def costs(mean, *, variant="kbga", spread=1.0, seed=0, **changes):
-    drawn = mean + spread * np.random.default_rng(seed).standard_normal(RUNS)
+def costs(mean, *, variant="kbga", spread=1.0, seed=0, runs=RUNS, **changes):
+    drawn = mean + spread * np.random.default_rng(seed).standard_normal(runs)
     return [
         make_record(make_cell(seed=i, variant=variant), cost=cost, **changes)
         for i, cost in enumerate(drawn)
@@ -54,7 +54,9 @@ def test_a_shorter_path_is_better_by_its_change_and_interval(runs_of):
 def test_a_longer_path_is_worse(runs_of):
     found = changes(runs_of(*costs(190.0)), runs_of(*costs(200.0, seed=1)))
     assert (found.better, found.worse) == (0, 1)
-    assert found.summary() == "0 better, 1 worse, of 4 comparisons."
+    assert found.summary() == (
+        "0 better, 1 worse, 1 same, of 2 comparisons; 2 of times are not counted."
+    )
 
 
 def test_the_same_rows_are_the_same(runs_of):
@@ -111,4 +113,55 @@ def test_stores_with_nothing_in_common_give_an_empty_table(runs_of):
 def test_one_run_each_has_no_interval(runs_of):
     found = changes(runs_of(*costs(190.0)[:1]), runs_of(*costs(191.0)[:1]))
     assert np.isnan(of(found)["low (%)"])
-    assert of(found)["verdict"] == "same"
+    assert of(found)["verdict"] == "not shown"
+
+
+def of_planners(number, mean, *, runs, seed=0, **changes):
+    """Runs of so many planners that all are alike."""
+    return [
+        record
+        for i in range(number)
+        for record in costs(mean, variant=f"p{i}", runs=runs, seed=seed + i, **changes)
+    ]
+
+
+def test_a_difference_that_so_few_runs_cannot_show_is_not_called_the_same(runs_of):
+    found = changes(
+        runs_of(*of_planners(12, 190.0, runs=5)), runs_of(*of_planners(12, 150.0, runs=5, seed=50))
+    )
+    frame = found.table.frame
+    cost = frame[frame["measure"] == "cost (m)"]
+    assert (cost["high (%)"] < -20.0).all()
+    assert set(cost["verdict"]) == {"not shown"}
+    # Of the 252 orders of 5 and 5 the two that are farthest apart, times 12 comparisons.
+    assert cost["p"].min() == pytest.approx(12 * 2 / 252)
+    assert "with 5 against 5 and 12 comparisons, the smallest p" in found.summary()
+    assert "is 0.095 after Holm's correction" in found.summary()
+    assert "6 runs on each side would do" in found.summary()
+
+
+def test_so_many_runs_as_it_says_would_do_do(runs_of):
+    old, new = (
+        runs_of(*of_planners(12, mean, runs=6, seed=seed))
+        for mean, seed in ((190.0, 0), (150.0, 50))
+    )
+    found = changes(old, new)
+    assert found.better == 12
+    assert "Too few" not in found.summary()
+
+
+def test_equal_costs_of_a_planner_without_chance_are_no_surer_than_others(runs_of):
+    # By the normal distribution p would be 0.048 here.
+    old, new = (runs_of(*of_planners(12, mean, runs=5, spread=0.0)) for mean in (190.0, 180.0))
+    assert changes(old, new).better == 0
+
+
+def test_if_only_some_measures_have_too_few_runs_they_are_named(runs_of):
+    def runs(seed):
+        counted = costs(190.0, runs=3, seed=seed)
+        uncounted = costs(190.0, runs=3, seed=seed, variant="other", checks=None)
+        return runs_of(*counted, *uncounted)
+
+    told = changes(runs(0), runs(1)).summary()
+    assert "cost (m), time to best (ms), time total (ms): Too few runs: with 3 against 3" in told
+    assert "checks: Too few runs: with 3 against 3 and 1 comparison, " in told

@@ -16,6 +16,8 @@ from suite.harness.single import cell_for
 from suite.harness.single_simulation import world_for
 from suite.planner import PlanStatus
 from suite.report.html.page import write_report
+from suite.report.html.shades import contrast
+from suite.report.overview_figure import NOTHING
 from suite.report.results import read_tables
 from suite.report.table import as_texts
 from suite.scene import make_scene
@@ -150,6 +152,36 @@ def test_failures_are_told_with_their_reason_and_nothing_in_it_is_taken_for_mark
     assert "Traceback (most recent call last)" in page.text["failures"]
 
 
+def test_runs_that_failed_come_before_those_that_only_found_nothing(tmp_path):
+    lost = [failed(PlanStatus.EXHAUSTED, None, seed=seed) for seed in range(3)]
+    broken = failed(PlanStatus.CRASHED, "signal 11", seed=3)
+    page = report_of(write_store(tmp_path / "s.db", [*lost, broken]))
+    rows = [row[1:3] for row in page.cells["failures"] if row]
+    assert rows == [["crashed", "1"], ["exhausted", "3"]]
+
+
+def test_no_two_tables_have_the_same_heading(store):
+    page = store.with_suffix(".html").read_text(encoding="utf-8")
+    headings = re.findall(r"<h3>(.*?)</h3>", page)
+    assert len(headings) > 10
+    assert len(set(headings)) == len(headings)
+
+
+def test_gaps_have_colours_on_which_their_numbers_are_read(page):
+    styles = [found["style"] for found in page.all("td") if found.get("style")]
+    pairs = [re.findall("#[0-9a-f]{6}", style) for style in styles]
+    # Three planners in two scenes; one of them has no path in the one, and no run in the other.
+    assert len(pairs) == 6
+    assert all(contrast(*pair) >= 4.5 for pair in pairs)
+    assert [ground for ground, _ in pairs].count(NOTHING) == 2
+
+
+def test_a_table_can_be_of_another_reference(store, tmp_path):
+    write_report(store, tmp_path / "r.html", reference="visibility-graph")
+    text = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert "probability that visibility-graph is better than the planner of the row" in text
+
+
 def test_what_is_missing_is_counted(page):
     counts = {row[0]: row[1:3] for row in page.cells["missing"] if row}
     assert counts["runs that a matrix wants and that were not done"] == ["2", "never-run 2"]
@@ -189,7 +221,7 @@ def test_one_run_is_enough(tmp_path):
     page = report_of(write_store(tmp_path / "one.db", [ran("zigzag", "kbga")]))
     assert "1 run of mine: 1 planner in 1 scene, 1 seed. 1 run ended" in page.text[""]
     assert page.cells["gaps"][1] == ["kbga", "0.00"]
-    assert "No run failed." in page.text["failures"]
+    assert "Every run ended with a path" in page.text["failures"]
 
 
 def test_without_populations_the_player_says_how_to_get_them(tmp_path):
