@@ -15,7 +15,7 @@ FLOORS = (
     {"dynamics", "scene", "scene_file", "exact"},
     {"planner", "plugin_class", "plugin_file", "plugins"},
     {"scenes", "record", "referee"},
-    {"conformance", "merge", "store"},
+    {"conformance", "merge", "store", "stored_cells"},
     {"harness", "dynamic", "report", "paper", "listing", "new_planner"},
     {"commands"},
     {"cli"},

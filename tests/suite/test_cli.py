@@ -433,13 +433,18 @@ def test_stores_are_merged_and_conflicts_are_named(kbga_bench, matrix_file, tmp_
     kbga_bench("run", matrix_file("wanderer"), "--store", one)
     kbga_bench("run", matrix_file("raises"), "--store", two)
     said = kbga_bench("run", matrix_file("raises"), "--store", one, "--merge", two).out
-    assert "two.db: 2 rows added, 0 were there, 0 in conflict." in said
+    assert "two.db: 2 rows added, 0 were there with the same outcome, 0 with another one." in said
     assert "2 were there, 0 ran now" in said
     with closing(sqlite3.connect(two)) as connection, connection:
         connection.execute("UPDATE runs SET status = 'solved' WHERE seed = 0")
     said = kbga_bench("merge", one, two, code=1).out
-    assert "0 rows added, 1 were there, 1 in conflict." in said
-    assert "has another outcome there; both are kept." in said
+    assert "0 rows added, 1 were there with the same outcome, 1 with another one." in said
+    assert "1 row should be the same bit for bit" in said
+    with closing(sqlite3.connect(one)) as first, closing(sqlite3.connect(two)) as second:
+        for connection in (first, second):
+            with connection:
+                connection.execute("UPDATE runs SET budget_wall_s = 1.0")
+    assert "as is to be expected where time counts: raises 1." in kbga_bench("merge", one, two).out
 
 
 def test_status_is_told_in_words_and_as_json(kbga_bench, filled):
@@ -456,7 +461,10 @@ def test_a_row_is_repeated_from_its_own_record(kbga_bench, filled, hostile):
     found = json.loads(kbga_bench("rerun", filled, key[:8], "--format", "json").out)
     assert (found["key"], found["same"], found["distance"]) == (key, True, 0.0)
     assert "the path is the same bit for bit" in kbga_bench("rerun", filled, key).out
+    assert "the same bit for bit" in kbga_bench("rerun", filled, "wall/wanderer/1").out
 
 
 def test_a_row_that_is_not_there_cannot_be_repeated(error_of, filled):
-    assert "no row begins with 'ffffffff00'" in error_of("rerun", filled, "ffffffff00")
+    assert "no row has a key that begins with 'ffffffff00'" in error_of(
+        "rerun", filled, "ffffffff00"
+    )
