@@ -48,7 +48,12 @@ def run(
         bool, typer.Option("--force", help="Run what is there again too, and replace its rows.")
     ] = False,
     only_failed: Annotated[
-        bool, typer.Option("--only-failed", help="Run again only the rows that failed.")
+        bool,
+        typer.Option(
+            "--only-failed",
+            help="Run what is missing, and again the rows that failed: invalid, error, crashed, "
+            "timed_out or out_of_memory. Not those without a path: exhausted, infeasible, refused.",
+        ),
     ] = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Say what would run, and about how long; run nothing.")

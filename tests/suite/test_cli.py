@@ -13,6 +13,8 @@ import shapely
 
 from suite.cli import main
 from suite.dynamics import Dynamics, constant_speed
+from suite.harness.run import FAILURES
+from suite.planner import PlanStatus
 from suite.scene import Obstacle, make_scene
 from suite.scene_file import read_scene, write_scene
 from suite.scenes.catalogue import load_scene
@@ -426,6 +428,16 @@ def test_rows_are_forced_to_be_run_again_or_only_those_that_failed(
     assert "2 were there, 2 ran now, 2 of these failed" in kbga_bench(*run, "--only-failed").out
     assert "0 were there, 4 ran now" in kbga_bench(*run, "--force").out
     kbga_bench(*run, "--force", "--only-failed", code=2)
+
+
+def test_the_help_of_run_says_what_failed_means(kbga_bench, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "300")
+    said = kbga_bench("run", "--help").out
+    (line,) = [line for line in said.splitlines() if "rows that failed" in line]
+    failed, others = line.split("Not those")
+    for status in PlanStatus:
+        if status is not PlanStatus.SOLVED:
+            assert str(status) in (failed if status in FAILURES else others), status
 
 
 def test_stores_are_merged_and_conflicts_are_named(kbga_bench, matrix_file, tmp_path):
