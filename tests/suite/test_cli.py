@@ -100,6 +100,19 @@ def test_a_simulation_says_how_the_robot_fared_as_json_and_in_words(kbga_bench):
     assert "openings     right at" in said
 
 
+def test_a_simulation_says_the_updates_at_which_something_happened_or_all(kbga_bench):
+    arguments = (*SIMULATE, "--seed", 3)
+    replans = json.loads(kbga_bench(*arguments, "--format", "json").out)["replans"]
+    said = kbga_bench(*arguments).out
+    # The door begins to move at once; at 20 s the right channel is shut.
+    times = [float(line.split()[0]) for line in said.splitlines() if "optimum" in line]
+    assert times == [0.0, 2.0, 20.0]
+    assert f"and {len(replans) - 3} more at which nothing else happened" in said
+    everything = kbga_bench(*arguments, "--updates").out
+    assert everything.count("(optimum ") == len(replans)
+    assert "nothing else" not in everything
+
+
 @pytest.mark.parametrize(
     "press",
     [
@@ -150,7 +163,8 @@ def test_a_simulation_that_cannot_be_run_says_why(error_of, option, value, messa
 
 def test_a_simulation_is_drawn_in_snapshots_and_moving(kbga_bench, tmp_path):
     sheet, moving = tmp_path / "door.png", tmp_path / "door.gif"
-    kbga_bench(*SIMULATE, "--time-limit", 3, "--plot", sheet, "--animate", moving, code=1)
+    drawn = (*SIMULATE, "--time-limit", 3, "--plot", sheet, "--animate", moving)
+    assert kbga_bench(*drawn, code=1).out.splitlines()[-2:] == [str(sheet), str(moving)]
     for file, kind in ((sheet, "PNG"), (moving, "GIF")):
         with PIL.Image.open(file) as image:
             assert image.format == kind
@@ -267,7 +281,11 @@ def test_plan_ends_with_1_if_there_is_no_path_of_value(kbga_bench, hostile, wall
 
 def test_plan_draws_the_run(kbga_bench, wall_file, tmp_path):
     picture = tmp_path / "run.png"
-    kbga_bench("plan", wall_file, "--planner", "visibility-graph", "--plot", picture)
+    plan = ("plan", wall_file, "--planner", "visibility-graph", "--plot", picture)
+    assert kbga_bench(*plan).out.splitlines()[-1] == str(picture)
+    done = kbga_bench(*plan, "--format", "json")
+    assert json.loads(done.out)["status"] == "solved"
+    assert done.err.strip() == str(picture)
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
