@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("suite", "kbga", "baselines")
 FLOORS = (
-    {"compiled", "errors", "geometry", "global_generators", "quiet"},
+    {"compiled", "errors", "geometry", "global_generators", "hints", "quiet"},
     {"dynamics", "scene", "scene_file", "exact"},
     {"planner", "plugin_class", "plugin_file", "plugins"},
     {"scenes", "record", "referee"},

@@ -10,6 +10,9 @@ import typer
 
 from suite.commands.options import TextFormat
 
+WIDEST = 44
+"""Letters of a line in a column of a table."""
+
 
 def print_json(value: Any) -> None:
     """Print plain data for programs."""
@@ -46,7 +49,7 @@ def print_rows(rows: list[dict[str, Any]]) -> None:
 
     headers = list(rows[0]) if rows else []
     texts = [[_as_text(value) for value in row.values()] for row in rows]
-    typer.echo(tabulate(texts, headers=headers, disable_numparse=True))
+    typer.echo(tabulate(texts, headers, disable_numparse=True, maxcolwidths=WIDEST))
 
 
 def _as_text(value: Any) -> str:
