@@ -75,8 +75,10 @@ class Forecast:
 
     def _in_all(self) -> list[str]:
         known = sum(part.known for part in self.parts)
-        if not known:
+        if not self.runs:
             return []
+        if not known:
+            return [f"In all nobody knows how long, with {self.jobs} jobs."]
         about = f"about {duration(self.seconds)} with {self.jobs} jobs"
         if known == self.runs:
             return [f"In all {about}, beside the warm-up of the planners."]
