@@ -46,6 +46,13 @@ def scenes_listing() -> list[dict[str, Any]]:
     return rows
 
 
+def scene_for_people(row: dict[str, Any]) -> dict[str, Any]:
+    """One of :func:`scenes_listing` in few columns: paths are too long for a line."""
+    chosen = ("name", "obstacles", "parts", "optimum", "queries", "figure")
+    kinds = [kind for kind in ("generated", "dynamic") if row[kind]]
+    return {name: row[name] for name in chosen} | {"kind": kinds}
+
+
 def planners_listing() -> list[dict[str, Any]]:
     """Each installed planner: name, package and version, whether it can be loaded, abilities."""
     rows: list[dict[str, Any]] = []
@@ -66,6 +73,22 @@ def planners_listing() -> list[dict[str, Any]]:
             }
         )
     return rows
+
+
+def planner_for_people(row: dict[str, Any]) -> dict[str, Any]:
+    """One of :func:`planners_listing` in few columns."""
+    abilities = [name for name in ("anytime", "deterministic", "exact", "population") if row[name]]
+    return {
+        "name": row["name"],
+        "from": f"{row['distribution']} {row['version']}",
+        "abilities": abilities if row["available"] else f"unavailable: {row['reason']}",
+        "budgets": row["budgets"],
+    }
+
+
+def matrix_for_people(row: dict[str, Any]) -> dict[str, Any]:
+    """One of :func:`matrices_listing` without its path."""
+    return {name: value for name, value in row.items() if name != "path"}
 
 
 def matrices_listing() -> list[dict[str, Any]]:

@@ -1,18 +1,25 @@
 """Rows of other stores, taken into one: for matrices that several machines ran.
 
-A row that is there already is left alone if both say the same. If they differ, as timed runs do,
-the row that is there stays, and the other one is kept beside it as a conflict, by its source.
+A row that is there already is left alone if both say the same. If they differ, the row that is
+there stays, and the other one is kept beside it as a conflict, by its source. Runs whose time
+counts are expected to differ; the others should be the same on every machine.
 """
 
 import json
 import sqlite3
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
 from suite.errors import StoreError
+from suite.record import Cell
 from suite.store import BELONGINGS, Store, read_runs
+from suite.stored_cells import stored_cell
+
+MOST_NAMED = 5
+"""Rows that are named one by one; of more it is said how many each planner has."""
 
 OUTCOME = ("status", "cost", "generations", "checks")
 """What two runs of one key must agree on, beside the path, to be called the same."""
@@ -25,18 +32,38 @@ class Merged:
     source : its file.
     added : number of rows that were not there.
     same : number of rows that were there, with the same outcome.
-    conflicts : keys of rows that were there with another outcome.
+    conflicts : cells of the rows that were there with another outcome, in the order of the matrix.
     """
 
     source: Path
     added: int
     same: int
-    conflicts: tuple[str, ...]
+    conflicts: tuple[Cell, ...]
 
-    def summary(self) -> str:
-        """One line."""
-        text = f"{self.source}: {self.added} rows added, {self.same} were there"
-        return f"{text}, {len(self.conflicts)} in conflict."
+    @property
+    def alarming(self) -> tuple[Cell, ...]:
+        """The conflicts that should not be: their time does not count."""
+        return tuple(cell for cell in self.conflicts if not cell.time_counts)
+
+    def as_text(self) -> str:
+        """A few lines for people."""
+        lines = [f"{self.source}: {self.added} rows added, {self.same} were there with the same"]
+        lines[0] += f" outcome, {len(self.conflicts)} with another one."
+        expected = [cell for cell in self.conflicts if cell.time_counts]
+        if expected:
+            lines.append(
+                f"  {_rows(len(expected))} came out otherwise, as is to be expected where time "
+                f"counts: {_by_planner(expected)}."
+            )
+        if self.alarming:
+            lines.append(
+                f"  {_rows(len(self.alarming))} should be the same bit for bit and came out "
+                "otherwise. Another machine, version or plugin?"
+            )
+            lines += _named(self.alarming)
+        if self.conflicts:
+            lines.append("  Of each, the row that was there stays, and the other is kept beside.")
+        return "\n".join(lines)
 
 
 def merge(store: Store, sources: Sequence[Path]) -> list[Merged]:
@@ -77,21 +104,40 @@ def _merge(store: Store, source: Path) -> Merged:
         _keep_conflicts(connection, conflicts, str(source))
         connection.execute("INSERT OR IGNORE INTO main.conflicts SELECT * FROM other.conflicts")
         added = _add_missing(connection)
-    return Merged(source, added, common - len(conflicts), tuple(conflicts))
+    return Merged(source, added, common - len(conflicts), tuple(conflicts.values()))
 
 
-def _conflicts(connection: sqlite3.Connection) -> list[str]:
+def _rows(count: int) -> str:
+    return "1 row" if count == 1 else f"{count} rows"
+
+
+def _by_planner(cells: Sequence[Cell]) -> str:
+    return ", ".join(f"{name} {count}" for name, count in Counter(c.variant for c in cells).items())
+
+
+def _named(cells: Sequence[Cell]) -> list[str]:
+    """A line for each, or for each planner, if there are many."""
+    if len(cells) <= MOST_NAMED:
+        return [f"    {cell.label}" for cell in cells]
+    return [f"    {_by_planner(cells)}; the first of them is {cells[0].label}"]
+
+
+def _conflicts(connection: sqlite3.Connection) -> dict[str, Cell]:
+    """The cells of the rows that are in both with another outcome, by their keys."""
     differs = " OR ".join(f"mine.{name} IS NOT its.{name}" for name in OUTCOME)
-    rows = connection.execute(
-        "SELECT its.key FROM other.runs AS its JOIN main.runs AS mine USING (key) "
+    found = connection.execute(
+        "SELECT mine.* FROM other.runs AS its JOIN main.runs AS mine USING (key) "
         "LEFT JOIN other.paths AS its_path USING (key) "
         "LEFT JOIN main.paths AS my_path USING (key) "
-        f"WHERE {differs} OR my_path.xy IS NOT its_path.xy ORDER BY its.key"
+        f"WHERE {differs} OR my_path.xy IS NOT its_path.xy "
+        "ORDER BY mine.position, mine.key"
     )
-    return [key for (key,) in rows]
+    names = [column[0] for column in found.description]
+    rows = [dict(zip(names, row, strict=True)) for row in found]
+    return {row["key"]: stored_cell(row) for row in rows}
 
 
-def _keep_conflicts(connection: sqlite3.Connection, keys: Sequence[str], source: str) -> None:
+def _keep_conflicts(connection: sqlite3.Connection, keys: Iterable[str], source: str) -> None:
     for key in keys:
         with closing(connection.execute("SELECT * FROM other.runs WHERE key = ?", (key,))) as found:
             names = [column[0] for column in found.description]

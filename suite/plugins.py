@@ -11,7 +11,6 @@ stand beside the declared ones.
 """
 
 import dataclasses
-import difflib
 import types
 import typing
 from collections import defaultdict
@@ -21,6 +20,7 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from suite.errors import ContractError, PluginError
+from suite.hints import did_you_mean
 from suite.planner import Abilities, Planner
 from suite.plugin_class import flaw
 from suite.plugin_code import OURS, code_hash, files_of_entry_point, module_of
@@ -158,7 +158,7 @@ def make_settings(planner_class: type[Planner], mapping: Mapping[str, Any]) -> A
     for key, value in mapping.items():
         if key not in wanted:
             fields = f"It has: {', '.join(wanted)}." if wanted else "It has no settings."
-            raise PluginError(f"{owner}: no setting '{key}'. {fields}{_did_you_mean(key, wanted)}")
+            raise PluginError(f"{owner}: no setting '{key}'. {fields}{did_you_mean(key, wanted)}")
         try:
             values[key] = _converted(value, wanted[key])
         except ValueError as error:
@@ -190,15 +190,11 @@ def _declared() -> dict[str, list[Source]]:
     return dict(declared)
 
 
-def _did_you_mean(word: str, words: Iterable[str]) -> str:
-    near = difflib.get_close_matches(word, list(words), n=1)
-    return f" Did you mean '{near[0]}'?" if near else ""
-
-
 def _unknown(name: str, declared: Iterable[str]) -> PluginError:
     installed = ", ".join(sorted(declared)) or "none"
     return PluginError(
-        f"no planner '{name}'. Installed: {installed}.{_did_you_mean(name, declared)}"
+        f"no planner '{name}'. Installed: {installed}; or give its file with --plugin."
+        f"{did_you_mean(name, declared)}"
     )
 
 

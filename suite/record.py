@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from suite.planner import Budget, Improvement, PlanStatus, Snapshot
+from suite.scene import DEFAULT_QUERY
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,14 +68,26 @@ class Cell:
     def label(self) -> str:
         """Short name of the cell for people."""
         world = self.world.name if self.world is not None else ""
-        return " / ".join(filter(None, (self.scene, world, self.variant, f"seed {self.seed}")))
+        query = self.query if self.query != DEFAULT_QUERY else ""
+        parts = (self.scene, query, world, self.variant, f"seed {self.seed}")
+        return " / ".join(filter(None, parts))
+
+    @property
+    def time_counts(self) -> bool:
+        """Whether the outcome depends on how fast the machine is: no two runs need be the same.
+
+        So it is if the budget is of time, or if the time that planning takes moves the world on.
+        """
+        is_charged = self.world is not None and self.world.settings.get("charge") == "measured"
+        return is_charged or self.budget.wall_s is not None
 
     @property
     def budget_as_dict(self) -> dict[str, float | int | None]:
         """The budget as plain data."""
         budget = self.budget
         return {
-            "wall_s": budget.wall_s,
+            # 1 and 1.0 are the same budget; a store knows the second only.
+            "wall_s": None if budget.wall_s is None else float(budget.wall_s),
             "generations": budget.generations,
             "checks": budget.checks,
         }

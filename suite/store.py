@@ -66,6 +66,7 @@ CREATE TABLE snapshots (
 ) WITHOUT ROWID;
 CREATE TABLE wanted (
     matrix TEXT NOT NULL, key TEXT NOT NULL, scene TEXT NOT NULL, variant TEXT NOT NULL,
+    position INTEGER,
     PRIMARY KEY (matrix, key)
 ) WITHOUT ROWID;
 CREATE TABLE conflicts (
@@ -133,10 +134,10 @@ class Store:
 
     def want(self, matrix: str, cells: Iterable[Cell]) -> None:
         """Write down what a matrix wants, in place of what it wanted before: for those who ask."""
-        rows = [(matrix, cell.key, cell.scene, cell.variant) for cell in cells]
+        rows = [(matrix, cell.key, cell.scene, cell.variant, cell.position) for cell in cells]
         with self._writing() as connection:
             connection.execute("DELETE FROM wanted WHERE matrix = ?", (matrix,))
-            connection.executemany("INSERT INTO wanted VALUES (?, ?, ?, ?)", rows)
+            connection.executemany("INSERT INTO wanted VALUES (?, ?, ?, ?, ?)", rows)
 
     def add(self, record: RunRecord, *, replace: bool = False) -> None:
         """Write one row and all that belongs to it, whole or not at all.
@@ -248,10 +249,19 @@ def _open_for_writing(path: Path) -> sqlite3.Connection:
             if _is_empty(connection):
                 _create_tables(connection)
         _check_is_store(path, connection)
+        with _explained(path):
+            _add_positions(connection)
     except BaseException:
         connection.close()
         raise
     return connection
+
+
+def _add_positions(connection: sqlite3.Connection) -> None:
+    """Stores that are older than this column are stores of the same version without it."""
+    names = [row[1] for row in connection.execute("PRAGMA table_info(wanted)")]
+    if "position" not in names:
+        connection.execute("ALTER TABLE wanted ADD COLUMN position INTEGER")
 
 
 def _locked(path: Path) -> BaseFileLock:
@@ -299,12 +309,22 @@ def is_being_written(path: Path) -> bool:
 
 
 def read_wanted(path: Path) -> pd.DataFrame:
-    """What the matrices of a store want: matrix, key, scene, variant, and the status or nothing."""
-    return _read(
+    """What the matrices of a store want, in their order.
+
+    Returns
+    -------
+    DataFrame
+        matrix, key, scene, variant, position, and the status or nothing.
+    """
+    frame = _read(
         path,
-        "SELECT matrix, wanted.key, wanted.scene, wanted.variant, status FROM wanted "
-        "LEFT JOIN runs ON runs.key = wanted.key ORDER BY matrix, wanted.key",
+        "SELECT wanted.*, status FROM wanted LEFT JOIN runs ON runs.key = wanted.key "
+        "ORDER BY matrix, wanted.key",
     )
+    if "position" not in frame:
+        # Written by an older kbga-bench, and not by this one yet.
+        frame["position"] = 0
+    return frame.sort_values(["matrix", "position", "key"], ignore_index=True)
 
 
 def read_conflicts(path: Path) -> pd.DataFrame:

@@ -24,7 +24,7 @@ from suite.commands.options import (
     WallOption,
     use_plugins,
 )
-from suite.commands.output import print_json
+from suite.commands.output import print_file, print_json, working
 from suite.quiet import print_aside
 
 
@@ -86,6 +86,8 @@ def plan(
         print_json(as_data(record))
     else:
         typer.echo(as_text(record))
+    if plot is not None:
+        print_file(plot, style)
     raise typer.Exit(0 if succeeded(record) else 1)
 
 
@@ -174,6 +176,10 @@ def simulate(
     animate: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw it moving: .gif or .mp4.")
     ] = None,
+    updates: Annotated[
+        bool,
+        typer.Option("--updates", help="Say all updates, not only those with something new."),
+    ] = False,
     style: TextStyle = TextFormat.TEXT,
 ) -> None:
     """Let a robot find its way through a dynamic scene, planning anew as it goes.
@@ -221,18 +227,22 @@ def simulate(
     )
     with print_aside():
         record = run_cell(cell)
+    if style is TextFormat.JSON:
+        print_json(as_data(record))
+    else:
+        typer.echo(as_text(record, updates=updates))
     done = simulation_of(record) if plot is not None or animate is not None else None
     if done is not None and plot is not None:
         from suite.report.dynamic_figures import plot_snapshots
         from suite.report.figures import save
 
-        save(plot_snapshots(done), plot)
+        with working(f"drawing {plot}"):
+            save(plot_snapshots(done), plot)
+        print_file(plot, style)
     if done is not None and animate is not None:
         from suite.report.dynamic_figures import animate as write_animation
 
-        write_animation(done, animate)
-    if style is TextFormat.JSON:
-        print_json(as_data(record))
-    else:
-        typer.echo(as_text(record))
+        with working(f"drawing {animate}"):
+            write_animation(done, animate)
+        print_file(animate, style)
     raise typer.Exit(0 if unhurt(record) else 1)

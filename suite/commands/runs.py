@@ -48,7 +48,12 @@ def run(
         bool, typer.Option("--force", help="Run what is there again too, and replace its rows.")
     ] = False,
     only_failed: Annotated[
-        bool, typer.Option("--only-failed", help="Run again only the rows that failed.")
+        bool,
+        typer.Option(
+            "--only-failed",
+            help="Run what is missing, and again the rows that failed: invalid, error, crashed, "
+            "timed_out or out_of_memory. Not those without a path: exhausted, infeasible, refused.",
+        ),
     ] = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Say what would run, and about how long; run nothing.")
@@ -68,7 +73,8 @@ def run(
     It can be stopped at any time and started again: only the runs in flight are lost. At the end
     some runs of planners with a population are done again, outside any clock, to keep it.
 
-    Exit code 0 if all is done, 1 if rows of other stores are in conflict, 130 after Ctrl-C.
+    Exit code 0 if all is done, 1 if rows of other stores differ that should be the same bit for
+    bit (see `merge`), 130 after Ctrl-C.
 
     Example: kbga-bench run paper-static --store out/paper.db --jobs 2
 
@@ -138,8 +144,9 @@ def merge(
 ) -> None:
     """Take the rows of other stores into one, as when several machines ran parts of a matrix.
 
-    A row that is there with another outcome stays, and the other one is kept beside it. Exit code
-    0 if there was no such conflict, 1 otherwise.
+    A row that is there with another outcome stays, and the other one is kept beside it. Exit code 1
+    if such rows should be the same bit for bit; 0 otherwise, also where rows differ whose time
+    counts (a budget of wall time, or planning that is charged for in a simulation).
 
     Example: kbga-bench merge all.db machine-1.db machine-2.db
     """
@@ -151,15 +158,13 @@ def merge(
 
 
 def _merge_into(store: Any, sources: list[Path]) -> bool:
-    """Merge, say what came of it, and return whether there was no conflict."""
+    """Merge, say what came of it, and return whether nothing differs that should not."""
     from suite.merge import merge
 
     done = merge(store, sources)
     for one in done:
-        typer.echo(one.summary())
-        for key in one.conflicts:
-            typer.echo(f"  row {key} has another outcome there; both are kept.")
-    return not any(one.conflicts for one in done)
+        typer.echo(one.as_text())
+    return not any(one.alarming for one in done)
 
 
 def status(store: StoreArgument, style: TextStyle = TextFormat.TEXT) -> None:
@@ -179,7 +184,14 @@ def status(store: StoreArgument, style: TextStyle = TextFormat.TEXT) -> None:
 
 def rerun(
     store: StoreArgument,
-    row: Annotated[str, typer.Argument(metavar="ROW", help="Key of the row, or its beginning.")],
+    row: Annotated[
+        str,
+        typer.Argument(
+            metavar="ROW",
+            help="SCENE/PLANNER/SEED, or SCENE/QUERY/PLANNER/SEED and SCENE/WORLD/PLANNER/SEED "
+            "where there are several; or the row's key, or its beginning.",
+        ),
+    ],
     debug: Annotated[
         bool, typer.Option("--pdb", help="Enter the debugger where an exception is raised.")
     ] = False,
@@ -190,10 +202,11 @@ def rerun(
     The store is not changed. Exit code 0 if the path is the same bit for bit, or may differ because
     the row's budget was of time; 1 otherwise.
 
-    Example: kbga-bench rerun out/paper.db 3f2a09
+    Example: kbga-bench rerun out/paper.db zigzag/kbga/7
     """
     from suite.harness.cell import attempt_cell, run_cell
-    from suite.harness.rerun import cell_of, compare
+    from suite.harness.rerun import compare
+    from suite.harness.row_names import cell_of
     from suite.harness.single import as_data, as_text
 
     cell = cell_of(store, row)

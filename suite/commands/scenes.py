@@ -50,22 +50,23 @@ def list_command(
         ListFormat.TABLE
     ),
 ) -> None:
-    """List what there is: scenes, planners or matrices.
+    """List what there is: scenes, planners or matrices; as JSON with the paths of their files.
 
     Example: kbga-bench list planners --format json
     """
     from suite import listing
 
     use_plugins(plugin)
-    rows = {
-        What.SCENES: listing.scenes_listing,
-        What.PLANNERS: listing.planners_listing,
-        What.MATRICES: listing.matrices_listing,
-    }[what]()
+    all_of, for_people = {
+        What.SCENES: (listing.scenes_listing, listing.scene_for_people),
+        What.PLANNERS: (listing.planners_listing, listing.planner_for_people),
+        What.MATRICES: (listing.matrices_listing, listing.matrix_for_people),
+    }[what]
+    rows = all_of()
     if style is ListFormat.JSON:
         print_json(rows)
     else:
-        print_rows(rows)
+        print_rows([for_people(row) for row in rows])
 
 
 def generate(

@@ -1,6 +1,7 @@
 """The progress of a matrix: bars on a terminal, plain lines anywhere else."""
 
 import time
+from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
@@ -11,11 +12,11 @@ from rich.progress import (
     TaskID,
     TextColumn,
     TimeElapsedColumn,
-    TimeRemainingColumn,
 )
 from rich.progress import Progress as Bars
 
 from suite.harness.forecast import duration
+from suite.harness.pace import Pace
 from suite.harness.run import FAILURES, Progress, Tally
 
 LINE_EVERY_S = 10.0
@@ -31,14 +32,22 @@ class Display:
     """Shows each :class:`Progress` that it is called with. A context manager.
 
     console : where; standard error by default, so that standard output stays for results.
+    clock : gives seconds.
     """
 
-    def __init__(self, title: str, console: Console | None = None) -> None:
+    def __init__(
+        self,
+        title: str,
+        console: Console | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
         self._title = title
         self._console = console or Console(stderr=True)
         self._bars: Bars | None = None
         self._tasks: dict[str, TaskID] = {}
-        self._begin = self._last_line = time.monotonic()
+        self._clock = clock
+        self._last_line = clock()
+        self._pace = Pace()
         self._is_first = True
         self._shown_failures: set[tuple[str, str]] = set()
 
@@ -52,7 +61,6 @@ class Display:
                 TextColumn("[red]{task.fields[failed]}[/red]"),
                 TextColumn("{task.fields[rate]}"),
                 TimeElapsedColumn(),
-                TimeRemainingColumn(),
                 TextColumn("[dim]{task.fields[running]}[/dim]"),
                 console=self._console,
             )
@@ -70,6 +78,7 @@ class Display:
 
     def __call__(self, progress: Progress) -> None:
         """Show it."""
+        self._pace.see(progress.done - progress.found, len(progress.running), self._clock())
         self._show_failure(progress)
         if self._bars is not None:
             self._show_bars(self._bars, progress)
@@ -115,7 +124,7 @@ class Display:
         )
 
     def _show_line(self, progress: Progress) -> None:
-        now = time.monotonic()
+        now = self._clock()
         is_end = progress.done == progress.wanted and not progress.running
         if now - self._last_line < LINE_EVERY_S and not is_end and not self._is_first:
             return
@@ -131,9 +140,8 @@ class Display:
         self._console.print(text, markup=False, highlight=False, soft_wrap=True)
 
     def _rate(self, progress: Progress) -> str:
-        """Runs per second of this session, and the time left at that rate."""
-        ran, seconds = progress.done - progress.found, time.monotonic() - self._begin
-        left = progress.wanted - progress.done
-        if ran == 0 or seconds == 0.0 or left == 0:
+        """Runs per second of this session, and the time left at that rate, once there is one."""
+        rate, left = self._pace.rate(), progress.wanted - progress.done
+        if rate is None or left == 0:
             return ""
-        return f"{ran / seconds:.2g} runs/s, about {duration(left * seconds / ran)} left"
+        return f"{rate:.2g} runs/s, about {duration(left / rate)} left"

@@ -41,7 +41,7 @@ class Forecast:
     """What a command would run.
 
     wanted, there : runs of the matrix, and those of them that need not be run.
-    parts : what would be run, variant by variant.
+    parts : what would be run, variant by variant, in the order of the matrix.
     jobs : runs at a time.
     """
 
@@ -71,9 +71,19 @@ class Forecast:
                 else ("nobody knows how long")
             )
             lines.append(f"  {part.variant}: {part.runs} runs, {about}")
-        if self.runs:
-            lines.append(f"In all about {duration(self.seconds)} with {self.jobs} jobs.")
-        return "\n".join(lines)
+        return "\n".join([*lines, *self._in_all()])
+
+    def _in_all(self) -> list[str]:
+        known = sum(part.known for part in self.parts)
+        if not self.runs:
+            return []
+        if not known:
+            return [f"In all nobody knows how long, with {self.jobs} jobs."]
+        about = f"about {duration(self.seconds)} with {self.jobs} jobs"
+        if known == self.runs:
+            return [f"In all {about}, beside the warm-up of the planners."]
+        least = f"In all at least {about.removeprefix('about ')}"
+        return [f"{least}; {self.runs - known} runs are not in that: nobody knows how long."]
 
 
 def forecast_matrix(
@@ -119,7 +129,7 @@ def forecast(wanted: int, cells: Sequence[Cell], runs: pd.DataFrame, jobs: int) 
         for (scene, variant), wall in runs.groupby(["scene", "variant"])["wall_s"]
     }
     by_variant: dict[str, list[Cell]] = {}
-    for cell in cells:
+    for cell in sorted(cells, key=lambda cell: cell.position):
         by_variant.setdefault(cell.variant, []).append(cell)
     parts = tuple(_part(variant, group, known) for variant, group in by_variant.items())
     return Forecast(wanted, wanted - len(cells), parts, jobs)

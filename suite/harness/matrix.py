@@ -43,6 +43,7 @@ from suite.dynamic.plain import settings_as_data
 from suite.dynamic.settings import world_settings
 from suite.errors import ContractError, MatrixError, PluginError, SceneError
 from suite.harness.toml_reader import Reader, read_toml
+from suite.hints import did_you_mean
 from suite.planner import Budget
 from suite.plugins import (
     PluginInfo,
@@ -58,6 +59,10 @@ from suite.scene_file import SUFFIXES
 from suite.scenes.catalogue import has_scene, load_scene
 
 FOLDER = Path(__file__).parent / "matrices"
+PLANNER = "the name of a planner (see `kbga-bench list planners`)"
+WORLD = "the world a name, for tables"
+"""What a text that is missing would be."""
+
 QUICK_SEEDS = 2
 """Enough to see that every cell works and to have a spread at all."""
 
@@ -266,7 +271,7 @@ def _worlds(
     if "world" not in reader.values:
         return ((),) * len(scenes)
     tables = reader.tables("world")
-    _refuse_twins(reader, "worlds", [table.text("name") for table in tables])
+    _refuse_twins(reader, "worlds", [table.text("name", what=WORLD) for table in tables])
     found: dict[str, list[tuple[str, Mapping[str, Any]]]] = {scene.name: [] for scene in scenes}
     for table in tables:
         name = table.text("name")
@@ -287,7 +292,7 @@ def _scenes_of(table: Reader, scenes: Sequence[Scene]) -> Sequence[Scene]:
     known = [scene.name for scene in scenes]
     for name in names:
         if name not in known:
-            hint = table.near(name, known)
+            hint = did_you_mean(name, known)
             raise table.error(f"scenes: '{name}' is no scene of this matrix.{hint}")
     return [scene for scene in scenes if scene.name in names]
 
@@ -325,12 +330,15 @@ def _variants(reader: Reader, *, simulated: bool) -> tuple[Variant, ...]:
 
 def _variant(table: Reader, *, simulated: bool) -> Variant:
     table.allow("name", "planner", "settings", "budget", *(["cold"] if simulated else []))
-    planner = table.text("planner")
+    planner = table.text("planner", what=PLANNER)
     table = table.renamed(f"planner '{table.values.get('name', planner)}'")
     known = planner_names()
     if planner not in known:
-        hint = table.near(planner, known)
-        raise table.error(f"there is no planner '{planner}'. Installed: {', '.join(known)}.{hint}")
+        hint = did_you_mean(planner, known)
+        raise table.error(
+            f"there is no planner '{planner}'. Installed: {', '.join(known)}; "
+            f"or give its file with --plugin.{hint}"
+        )
     # The others are not imported: they bring libraries of their own.
     plugin = planner_info(planner)
     settings = table.table("settings").values

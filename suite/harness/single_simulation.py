@@ -1,6 +1,7 @@
 """A single simulated run as ``kbga-bench simulate`` asks for it, and what came of it."""
 
 from collections.abc import Mapping
+from itertools import pairwise
 from statistics import median
 from typing import Any
 
@@ -11,6 +12,9 @@ from suite.harness import single
 from suite.harness.prepared import prepared_scene
 from suite.planner import PlanStatus
 from suite.record import RunRecord, World
+
+TURN_M = 1.0
+"""A way ahead that becomes longer or shorter by more is news, metres."""
 
 
 def world_for(
@@ -64,8 +68,15 @@ def as_data(record: RunRecord) -> dict[str, Any]:
     }
 
 
-def as_text(record: RunRecord) -> str:
-    """What came of a run, in a few lines for people."""
+def as_text(record: RunRecord, *, updates: bool = False) -> str:
+    """What came of a run, in a few lines for people.
+
+    Parameters
+    ----------
+    record : RunRecord
+    updates : bool
+        Show all updates, and not only those at which something happened.
+    """
     data = record.simulation
     if data is None:
         return single.as_text(record)
@@ -79,12 +90,43 @@ def as_text(record: RunRecord) -> str:
         f"  length       {data['length']:.3f} m{_exact_length(record)}",
         f"  replans      {len(data['replans'])}{_latencies(data['replans'])}",
     ]
-    return "\n".join(lines + [_replan_as_text(replan) for replan in data["replans"]])
+    shown = data["replans"] if updates else _eventful(data)
+    lines += [_replan_as_text(replan) for replan in shown]
+    others = len(data["replans"]) - len(shown)
+    if others:
+        lines.append(f"    and {others} more at which nothing else happened (--updates shows all)")
+    return "\n".join(lines)
 
 
 def unhurt(record: RunRecord) -> bool:
     """Whether the robot came to the goal and was never hit."""
     return record.status is PlanStatus.SOLVED
+
+
+def _eventful(data: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """The first update, and those at which something happened that had not just happened before.
+
+    That is: the answer is of another kind, the way ahead became longer or shorter, an obstacle was
+    detected, or what is known began to change.
+    """
+    replans, speed = data["replans"], data["world"]["speed"]
+    detections = set(data["detected"].values())
+    return replans[:1] + [
+        new
+        for old, new in pairwise(replans)
+        if new["status"] != old["status"]
+        or new["time"] in detections
+        or (new["changed"] and not old["changed"])
+        or _is_turn(old, new, speed)
+    ]
+
+
+def _is_turn(old: Mapping[str, Any], new: Mapping[str, Any], speed: float) -> bool:
+    """Whether a path is longer or shorter than what was left of the one before."""
+    if old["cost"] is None or new["cost"] is None:
+        return old["cost"] is not new["cost"]
+    left = old["cost"] - speed * (new["time"] - old["time"])
+    return bool(abs(new["cost"] - left) > TURN_M)
 
 
 def _hit_as_text(hit: Mapping[str, Any]) -> str:

@@ -1,8 +1,12 @@
 """How a store stands, read from another shell while the harness goes on writing to it."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
+
+from suite.harness.row_names import DIGITS
 from suite.harness.run import FAILURES, SUCCESSES
 from suite.store import (
     is_being_written,
@@ -11,6 +15,10 @@ from suite.store import (
     read_sessions,
     read_wanted,
 )
+from suite.stored_cells import stored_cell
+
+MOST_FAILURES = 5
+"""Failed rows that are named to people."""
 
 
 def status(store: Path) -> dict[str, Any]:
@@ -21,7 +29,9 @@ def status(store: Path) -> dict[str, Any]:
     dict
         ``wanted``, ``done`` and ``missing`` count the runs of the matrices as they were run last;
         ``other`` rows are of scenes and settings that no matrix wants any more. ``by_status`` and
-        ``planners`` count wanted runs. ``writer`` says who has it open for writing, or is null.
+        ``planners``, in the order of the matrix, count wanted runs. ``failures`` are the wanted
+        rows that ended in one of FAILURES (all of them, if no matrix wants any): key, name, status
+        and reason. ``writer`` says who has it open for writing, or is null.
 
     Raises
     ------
@@ -49,6 +59,7 @@ def status(store: Path) -> dict[str, Any]:
             }
             for variant, group in wanted.groupby("variant", sort=False)
         },
+        "failures": _failures(runs, wanted),
         "last_row_at": runs["started_at"].max() if len(runs) else None,
         "writer": _writer(sessions[-1] if sessions else {}) if is_being_written(store) else None,
     }
@@ -76,13 +87,44 @@ def as_text(found: dict[str, Any]) -> str:
         failed = f", {tally['failed']} failed" if tally["failed"] else ""
         good = f"{tally['succeeded']} succeeded"
         lines.append(f"  {name}: {tally['done']} of {tally['wanted']}, {good}{failed}")
+    lines += _failures_as_text(found["failures"])
     if found["other"]:
         lines.append(
             f"  {found['other']} more rows, of scenes or settings that no matrix wants now"
         )
     if found["conflicts"]:
-        lines.append(f"  {found['conflicts']} rows of other stores in conflict with its own")
+        lines.append(
+            f"  {found['conflicts']} rows of merged stores had another outcome, and are kept beside"
+        )
     return "\n".join(lines)
+
+
+def _failures(runs: pd.DataFrame, wanted: pd.DataFrame) -> list[dict[str, Any]]:
+    failed = runs[runs["status"].isin(FAILURES)]
+    if len(wanted):
+        failed = failed[failed["key"].isin(wanted["key"])]
+    return [
+        {
+            "key": row["key"],
+            "name": stored_cell(row).label,
+            "status": row["status"],
+            "reason": row["reason"] if isinstance(row["reason"], str) else None,
+        }
+        for row in failed.to_dict("records")
+    ]
+
+
+def _failures_as_text(failures: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The first failures with their keys, and how many more there are."""
+    if not failures:
+        return []
+    lines = ["  failed (once more, here: kbga-bench rerun STORE KEY):"]
+    for row in failures[:MOST_FAILURES]:
+        reason = (row["reason"] or "").strip().splitlines()
+        why = f": {reason[-1]}" if reason else ""
+        lines.append(f"    {row['key'][:DIGITS]}  {row['name']}  {row['status']}{why}")
+    more = len(failures) - MOST_FAILURES
+    return lines + ([f"    and {more} more; --format json has all"] if more > 0 else [])
 
 
 def _counts(values: Any) -> dict[str, int]:

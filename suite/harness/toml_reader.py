@@ -1,13 +1,12 @@
 """Values out of a TOML file, each checked, with errors that say what, where, and how to mend."""
 
-import difflib
 import tomllib
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from suite.errors import MatrixError
+from suite.hints import did_you_mean
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,7 +35,7 @@ class Reader:
         """Refuse every key but these."""
         for key in self.values:
             if key not in keys:
-                hint = self.near(key, keys)
+                hint = did_you_mean(key, keys)
                 raise self.error(f"unknown key '{key}'. It may have: {', '.join(keys)}.{hint}")
 
     def take(self, key: str, how: str) -> Any:
@@ -45,13 +44,13 @@ class Reader:
             raise self.error(f"'{key}' is missing: {how}.")
         return self.values[key]
 
-    def text(self, key: str, default: str | None = None) -> str:
-        """A string, not empty unless the default is."""
+    def text(self, key: str, default: str | None = None, what: str = "a text") -> str:
+        """A string, not empty unless the default is; ``what`` says which."""
         if default is not None and key not in self.values:
             return default
-        value = self.take(key, "give a text")
+        value = self.take(key, f"give {what}")
         if not isinstance(value, str) or not (value or default == ""):
-            raise self.error(f"{key} is {value!r}. Give a text.")
+            raise self.error(f"{key} is {value!r}. Give {what}.")
         return value
 
     def flag(self, key: str) -> bool:
@@ -81,12 +80,6 @@ class Reader:
         if not isinstance(value, list) or not value or not all(isinstance(v, dict) for v in value):
             raise self.error(f"{key} is no array of tables. Write [[{key}]] above each.")
         return [Reader(self.file, v, f"{key} {i}") for i, v in enumerate(value, 1)]
-
-    @staticmethod
-    def near(word: str, words: Iterable[str]) -> str:
-        """A hint at the nearest of some words, or nothing."""
-        nearest = difflib.get_close_matches(word, list(words), n=1)
-        return f" Did you mean '{nearest[0]}'?" if nearest else ""
 
 
 def read_toml(path: Path) -> dict[str, Any]:

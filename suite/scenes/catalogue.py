@@ -7,10 +7,10 @@ for claims about any dynamic scene.
 """
 
 import os
-from difflib import get_close_matches
 from pathlib import Path
 
 from suite.errors import SceneError
+from suite.hints import did_you_mean
 from suite.scene import Scene, make_scene
 from suite.scene_file import SUFFIXES, read_scene
 from suite.scenes.moving import moving, moving_name, parse_moving_name
@@ -191,5 +191,4 @@ def _unknown(name: str) -> str:
         f"Generated: {', '.join(generated_names())}, or scattered_N-S for N obstacles and seed S, "
         "moving-S for seed S."
     )
-    nearest = get_close_matches(name, [*_PAPER_ORDER, *_DYNAMIC, *generated_names()], n=1)
-    return message + (f" Did you mean '{nearest[0]}'?" if nearest else "")
+    return message + did_you_mean(name, [*_PAPER_ORDER, *_DYNAMIC, *generated_names()])

@@ -1,9 +1,10 @@
 """Moving scenes: rooms whose obstacles move, hide, appear and vanish, drawn from a seed.
 
 They are for claims about every dynamic scene: unlike the paper's two, nobody arranged them.
-Obstacles may overlap, leave the room, stop on the goal or come upon the robot, and in some scenes a
-wall stands across the room for good: not every goal can be reached, not every hit be avoided.
-Metres, seconds.
+At time 0 what the robot knows leaves it a way: what is closed from the start is drawn anew. Later
+obstacles may overlap, leave the room, stop on the goal or come upon the robot, and a wall across
+the room may appear or be found: not every goal can be reached, not every hit be avoided. Metres,
+seconds.
 """
 
 import re
@@ -12,11 +13,13 @@ from zlib import crc32
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from shapely.affinity import translate
 from shapely.geometry import MultiPoint, Polygon
 
 from suite.dynamics import Detection, Dynamics, Motion, Removal, make_motion
 from suite.errors import SceneError
-from suite.scene import DEFAULT_QUERY, Obstacle, Scene, make_scene
+from suite.exact import shortest_path
+from suite.scene import DEFAULT_QUERY, Obstacle, Scene, make_scene, scene_at
 from suite.scenes.outlines import concave_outline, convex_outline
 
 WORKSPACE = shapely.box(0.0, 0.0, 100.0, 100.0)
@@ -81,6 +84,30 @@ def moving(seed: int) -> Scene:
     if seed < 0:
         raise SceneError(f"moving scene: seed is {seed}. Give 0 or more.")
     rng = np.random.default_rng([seed, crc32(b"moving")])
+    while not _can_start(scene := _drawn(seed, rng)):
+        pass
+    return scene
+
+
+def _can_start(scene: Scene) -> bool:
+    """Whether there is a way in what the robot knows when it looks around for the first time."""
+    start = shapely.Point(scene.query().start)
+    senses = scene.properties["world"]["sensing_range"]
+    unknown = {o.name for o in scene.obstacles if not _is_known_at_first(o, start, senses)}
+    return shortest_path(scene_at(scene, 0.0, without=unknown), scene.query()).path is not None
+
+
+def _is_known_at_first(obstacle: Obstacle, start: shapely.Point, senses: float) -> bool:
+    dynamics = obstacle.dynamics
+    if dynamics is None or dynamics.detection is None:
+        return True
+    within = dynamics.detection.range
+    distance = translate(obstacle.polygon, *dynamics.offset(0.0)).distance(start)
+    return bool(distance <= (senses if within is None else within))
+
+
+def _drawn(seed: int, rng: np.random.Generator) -> Scene:
+    """One draw, whatever it is worth."""
     start, goal = ((_number(rng, x, x + 17.0), _number(rng, 3.0, 97.0)) for x in (3.0, 80.0))
     ends = MultiPoint([start, goal])
     statics, changing = rng.integers(*STATIC), rng.integers(*CHANGING)

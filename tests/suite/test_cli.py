@@ -13,6 +13,8 @@ import shapely
 
 from suite.cli import main
 from suite.dynamics import Dynamics, constant_speed
+from suite.harness.run import FAILURES
+from suite.planner import PlanStatus
 from suite.scene import Obstacle, make_scene
 from suite.scene_file import read_scene, write_scene
 from suite.scenes.catalogue import load_scene
@@ -81,6 +83,15 @@ def test_a_plugin_that_cannot_be_imported_is_listed_with_the_reason(kbga_bench, 
     assert "wanderer" in kbga_bench("list", "planners").out
 
 
+@pytest.mark.parametrize("what", ["scenes", "planners", "matrices"])
+def test_lists_for_people_fit_a_page_and_name_no_path(kbga_bench, what):
+    lines = kbga_bench("list", what).out.splitlines()
+    rows = json.loads(kbga_bench("list", what, "--format", "json").out)
+    assert max(map(len, lines)) <= 102
+    assert not any("/suite/" in line for line in lines)
+    assert {row["name"] for row in rows} <= {line.split()[0] for line in lines}
+
+
 SIMULATE = ("simulate", "door", "--planner", "kbga", "--charge", "zero")
 
 
@@ -96,6 +107,19 @@ def test_a_simulation_says_how_the_robot_fared_as_json_and_in_words(kbga_bench):
     said = kbga_bench(*arguments).out
     assert said.startswith("door / kbga / seed 3: reached\n  hit          never\n")
     assert "openings     right at" in said
+
+
+def test_a_simulation_says_the_updates_at_which_something_happened_or_all(kbga_bench):
+    arguments = (*SIMULATE, "--seed", 3)
+    replans = json.loads(kbga_bench(*arguments, "--format", "json").out)["replans"]
+    said = kbga_bench(*arguments).out
+    # The door begins to move at once; at 20 s the right channel is shut.
+    times = [float(line.split()[0]) for line in said.splitlines() if "optimum" in line]
+    assert times == [0.0, 2.0, 20.0]
+    assert f"and {len(replans) - 3} more at which nothing else happened" in said
+    everything = kbga_bench(*arguments, "--updates").out
+    assert everything.count("(optimum ") == len(replans)
+    assert "nothing else" not in everything
 
 
 @pytest.mark.parametrize(
@@ -148,7 +172,8 @@ def test_a_simulation_that_cannot_be_run_says_why(error_of, option, value, messa
 
 def test_a_simulation_is_drawn_in_snapshots_and_moving(kbga_bench, tmp_path):
     sheet, moving = tmp_path / "door.png", tmp_path / "door.gif"
-    kbga_bench(*SIMULATE, "--time-limit", 3, "--plot", sheet, "--animate", moving, code=1)
+    drawn = (*SIMULATE, "--time-limit", 3, "--plot", sheet, "--animate", moving)
+    assert kbga_bench(*drawn, code=1).out.splitlines()[-2:] == [str(sheet), str(moving)]
     for file, kind in ((sheet, "PNG"), (moving, "GIF")):
         with PIL.Image.open(file) as image:
             assert image.format == kind
@@ -275,7 +300,11 @@ def test_plan_ends_with_1_if_there_is_no_path_of_value(kbga_bench, hostile, wall
 
 def test_plan_draws_the_run(kbga_bench, wall_file, tmp_path):
     picture = tmp_path / "run.png"
-    kbga_bench("plan", wall_file, "--planner", "visibility-graph", "--plot", picture)
+    plan = ("plan", wall_file, "--planner", "visibility-graph", "--plot", picture)
+    assert kbga_bench(*plan).out.splitlines()[-1] == str(picture)
+    done = kbga_bench(*plan, "--format", "json")
+    assert json.loads(done.out)["status"] == "solved"
+    assert done.err.strip() == str(picture)
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
@@ -460,18 +489,33 @@ def test_rows_are_forced_to_be_run_again_or_only_those_that_failed(
     kbga_bench(*run, "--force", "--only-failed", code=2)
 
 
+def test_the_help_of_run_says_what_failed_means(kbga_bench, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "300")
+    said = kbga_bench("run", "--help").out
+    (line,) = [line for line in said.splitlines() if "rows that failed" in line]
+    failed, others = line.split("Not those")
+    for status in PlanStatus:
+        if status is not PlanStatus.SOLVED:
+            assert str(status) in (failed if status in FAILURES else others), status
+
+
 def test_stores_are_merged_and_conflicts_are_named(kbga_bench, matrix_file, tmp_path):
     one, two = tmp_path / "one.db", tmp_path / "two.db"
     kbga_bench("run", matrix_file("wanderer"), "--store", one)
     kbga_bench("run", matrix_file("raises"), "--store", two)
     said = kbga_bench("run", matrix_file("raises"), "--store", one, "--merge", two).out
-    assert "two.db: 2 rows added, 0 were there, 0 in conflict." in said
+    assert "two.db: 2 rows added, 0 were there with the same outcome, 0 with another one." in said
     assert "2 were there, 0 ran now" in said
     with closing(sqlite3.connect(two)) as connection, connection:
         connection.execute("UPDATE runs SET status = 'solved' WHERE seed = 0")
     said = kbga_bench("merge", one, two, code=1).out
-    assert "0 rows added, 1 were there, 1 in conflict." in said
-    assert "has another outcome there; both are kept." in said
+    assert "0 rows added, 1 were there with the same outcome, 1 with another one." in said
+    assert "1 row should be the same bit for bit" in said
+    with closing(sqlite3.connect(one)) as first, closing(sqlite3.connect(two)) as second:
+        for connection in (first, second):
+            with connection:
+                connection.execute("UPDATE runs SET budget_wall_s = 1.0")
+    assert "as is to be expected where time counts: raises 1." in kbga_bench("merge", one, two).out
 
 
 def test_status_is_told_in_words_and_as_json(kbga_bench, filled):
@@ -488,7 +532,10 @@ def test_a_row_is_repeated_from_its_own_record(kbga_bench, filled, hostile):
     found = json.loads(kbga_bench("rerun", filled, key[:8], "--format", "json").out)
     assert (found["key"], found["same"], found["distance"]) == (key, True, 0.0)
     assert "the path is the same bit for bit" in kbga_bench("rerun", filled, key).out
+    assert "the same bit for bit" in kbga_bench("rerun", filled, "wall/wanderer/1").out
 
 
 def test_a_row_that_is_not_there_cannot_be_repeated(error_of, filled):
-    assert "no row begins with 'ffffffff00'" in error_of("rerun", filled, "ffffffff00")
+    assert "no row has a key that begins with 'ffffffff00'" in error_of(
+        "rerun", filled, "ffffffff00"
+    )

@@ -7,6 +7,7 @@ import pytest
 
 from suite.errors import StoreError
 from suite.merge import merge
+from suite.planner import Budget
 from suite.record import World
 from suite.store import (
     open_store,
@@ -57,7 +58,7 @@ def test_a_row_with_another_outcome_is_kept_beside_and_named(store_of):
     for _ in range(2):
         with open_store(mine) as store:
             (done,) = merge(store, [other])
-        assert done.conflicts == (better.cell.key,)
+        assert [cell.key for cell in done.conflicts] == [better.cell.key]
     assert read_runs(mine)["cost"].tolist() == [156.0]
     (conflict,) = read_conflicts(mine).to_dict("records")
     assert (conflict["key"], conflict["source"]) == (better.cell.key, str(other))
@@ -76,6 +77,49 @@ def test_times_may_differ(store_of):
     with open_store(mine) as store:
         (done,) = merge(store, [other])
     assert (done.same, done.conflicts) == (1, ())
+
+
+TIMED = Budget(wall_s=1.0)
+
+
+def other_outcomes(store_of, *cells):
+    """What a merge says of two stores that differ in these cells."""
+    mine = store_of("a", *(make_record(cell) for cell in cells))
+    other = store_of("b", *(make_record(cell, cost=150.0) for cell in cells))
+    with open_store(mine) as store:
+        return merge(store, [other])[0]
+
+
+def test_another_outcome_is_to_be_expected_where_time_counts_and_alarming_elsewhere(store_of):
+    driven = World("w", {"charge": "measured"})
+    free = make_cell(seed=4, world=World("w", {"charge": "zero"}))
+    timed = [
+        make_cell(seed=1, budget=TIMED, variant="rrt"),
+        make_cell(seed=2, budget=TIMED, variant="rrt"),
+        make_cell(seed=3, world=driven),
+    ]
+    done = other_outcomes(store_of, *timed, free)
+    assert [cell.seed for cell in done.alarming] == [4]
+    said = done.as_text()
+    assert "0 rows added, 0 were there with the same outcome, 4 with another one." in said
+    assert "3 rows came out otherwise, as is to be expected where time counts" in said
+    assert "rrt 2, kbga 1" in said
+    assert "1 row should be the same bit for bit" in said
+    assert "\n    zigzag / w / kbga / seed 4\n" in said
+
+
+def test_rows_that_time_alone_makes_differ_are_no_alarm(store_of):
+    done = other_outcomes(store_of, make_cell(budget=TIMED))
+    assert done.alarming == ()
+    assert "bit for bit" not in done.as_text()
+
+
+def test_of_many_rows_that_differ_it_is_said_how_many_each_planner_has(store_of):
+    cells = [make_cell(seed=i % 4, variant="ab"[i // 4], position=i) for i in range(8)]
+    said = other_outcomes(store_of, *cells).as_text()
+    assert "8 rows should be the same" in said
+    assert "a 4, b 4; the first of them is zigzag / a / seed 0" in said
+    assert len(said.splitlines()) == 4
 
 
 def test_several_stores_are_taken_in_one_after_the_other(store_of):

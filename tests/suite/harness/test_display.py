@@ -29,6 +29,35 @@ def test_a_log_gets_plain_lines_of_first_and_last_state():
     ]
 
 
+def lines_of(times, *, wanted, running=2):
+    """What a log gets of runs that end at these times, the first of which waited for a compiler."""
+    now = [0.0]
+    out = io.StringIO()
+    with Display("walls", Console(file=out, width=200), clock=lambda: now[0]) as display:
+        names = ["x"] * running
+        display(Progress(wanted, 0, 0, running=names))
+        for done, time in enumerate(times, 1):
+            now[0] = time
+            display(Progress(wanted, done, 0, running=names))
+    return out.getvalue().splitlines()
+
+
+def test_what_the_compiler_took_is_not_taken_for_the_rate():
+    # 75 s of compiling, then two runs a second.
+    said = lines_of([75.0 + i / 2 for i in range(60)], wanted=100)
+    assert "left; running" in said[1], said
+    assert "runs/s" not in said[1], "after one run"
+    assert "2 runs/s, about 40 s left" in said[2]
+    assert all("min" not in line for line in said)
+
+
+def test_runs_of_an_hour_have_an_estimate_after_a_round():
+    # Two at a time, that end a minute apart: after the first round nobody knows yet.
+    said = lines_of([3600, 3660, 7200, 7260], wanted=8)
+    assert ["runs/s" in line for line in said] == [False, False, False, False, True]
+    assert "about 2 h 0 min left" in said[-1]
+
+
 def test_a_failure_is_named_once_with_the_end_of_its_reason():
     state = Progress(4, 1, 0, failed=1, last=failure())
     text = shown(state, state)

@@ -47,6 +47,19 @@ def test_what_nobody_knows_is_said(changes):
     assert "kbga: 1 runs, nobody knows how long" in told.as_text()
 
 
+def test_the_sum_says_of_how_many_runs_nobody_knows():
+    cells = [make_cell(budget=Budget(wall_s=1.5), variant="timed"), make_cell(**UNLIMITED)]
+    said = forecast(2, cells, NOTHING, jobs=1).as_text()
+    assert "In all at least 2 s with 1 jobs; 1 runs are not in that" in said
+    alone = forecast(1, cells[1:], NOTHING, jobs=1).as_text()
+    assert "In all nobody knows how long, with 1 jobs." in alone
+
+
+def test_planners_are_in_the_order_of_the_matrix():
+    cells = [make_cell(variant=name, position=9 - i) for i, name in enumerate("abc")]
+    assert [part.variant for part in forecast(3, cells, NOTHING, 1).parts] == ["c", "b", "a"]
+
+
 def test_a_matrix_is_forecast_without_a_store_and_nothing_is_written(tmp_path):
     matrix, file = load_matrix("kbga-rounds"), tmp_path / "none.db"
     told = forecast_matrix(matrix, file, jobs=None, quick=True, which=Which.MISSING)

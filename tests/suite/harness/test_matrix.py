@@ -107,6 +107,8 @@ def test_a_plugin_that_cannot_be_imported_is_no_reason_to_refuse_the_matrix(writ
         ("seeds = 3", "seeds = [1, 1]", "two seeds are named '1'"),
         ("seeds = 3", "", "'seeds' is missing"),
         ("seeds = 3", "sedes = 3", "unknown key 'sedes'"),
+        ('planner = "visibility-graph"', "", "'planner' is missing: give the name of a planner"),
+        ('"visibility-graph"', '"mine"', "or give its file with --plugin."),
         ("seeds = 3", "seeds = 3\nseedz = 3", "Did you mean 'seeds'?"),
         ('["zigzag"]', "[]", "scenes is []"),
         ('["zigzag"]', '["zigzga"]', "Did you mean 'zigzag'?"),

@@ -2,9 +2,9 @@
 
 import pytest
 
-from suite.errors import StoreError
 from suite.harness.cell import run_cell
-from suite.harness.rerun import cell_of, compare
+from suite.harness.rerun import compare
+from suite.harness.row_names import cell_of
 from suite.harness.single import cell_for
 from suite.harness.single_simulation import world_for
 from suite.planner import Budget
@@ -76,16 +76,3 @@ def test_a_row_whose_budget_is_time_may_come_out_otherwise(store):
     found = compare(file, make_record(cell, path=None, cost=None))
     assert (found.same, found.must_be_same, found.distance) == (False, False, None)
     assert "that is to be expected" in found.words
-
-
-@pytest.mark.parametrize("key", ["", "abc", "zzzzzz"])
-def test_a_key_that_names_no_row_is_an_error(store, key):
-    with pytest.raises(StoreError, match=f"no row begins with '{key}'"):
-        cell_of(store(make_record()), key)
-
-
-def test_a_key_that_names_two_rows_is_an_error(store, monkeypatch):
-    monkeypatch.setattr("suite.harness.rerun.LEAST_DIGITS", 0)
-    file = store(make_record(), make_record(make_cell(seed=1)))
-    with pytest.raises(StoreError, match="2 rows begin with ''"):
-        cell_of(file, "")

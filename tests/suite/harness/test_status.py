@@ -1,7 +1,9 @@
 """How a store stands, told to another shell."""
 
+import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 
 import pytest
 
@@ -41,6 +43,46 @@ def test_it_counts_what_is_wanted_done_and_missing(file):
     assert "kbga: 2 of 3, 1 succeeded, 1 failed" in as_text(found)
 
 
+def test_planners_are_in_the_order_of_the_matrix_whichever_row_came_first(tmp_path):
+    names = ("zeta", "alpha", "mid")
+    cells = [make_cell(variant=name, position=i) for i, name in enumerate(names)]
+    with open_store(tmp_path / "s.db") as store:
+        store.want("walls", cells)
+        store.begin_session({})
+        for cell in reversed(cells):
+            store.add(make_record(cell))
+    assert list(status(tmp_path / "s.db")["planners"]) == list(names)
+
+
+def test_a_store_of_before_the_order_was_kept_is_read_and_written(file):
+    with closing(sqlite3.connect(file)) as connection, connection:
+        connection.execute("ALTER TABLE wanted DROP COLUMN position")
+    assert set(status(file)["planners"]) == {"kbga", "other"}
+    with open_store(file) as store:
+        store.want("walls", [make_cell(variant=name, position=i) for i, name in enumerate("ba")])
+    assert list(status(file)["planners"]) == ["b", "a"]
+
+
+def test_failed_rows_are_named_with_their_keys(file):
+    (failed,) = status(file)["failures"]
+    assert failed == {
+        "key": CELLS[1].key, "name": "zigzag / kbga / seed 1", "status": "crashed", "reason": None,
+    }  # fmt: skip
+    assert f"    {CELLS[1].key[:8]}  zigzag / kbga / seed 1  crashed" in as_text(status(file))
+
+
+def test_of_many_failed_rows_the_first_are_named(tmp_path):
+    with open_store(tmp_path / "s.db") as store:
+        store.begin_session({})
+        for seed in range(7):
+            cell = make_cell(seed=seed, position=seed)
+            store.add(make_record(cell, status=PlanStatus.ERROR, reason="Trace\nValueError: no"))
+    said = as_text(status(tmp_path / "s.db"))
+    assert said.count("error: ValueError: no") == 5
+    assert "seed 4  error" in said
+    assert "and 2 more" in said
+
+
 def test_a_matrix_that_is_run_anew_wants_what_it_wants_now(file):
     with open_store(file) as store:
         store.want("walls", CELLS[:1])
@@ -71,7 +113,7 @@ def test_it_counts_conflicts(file, tmp_path):
         merge(store, [tmp_path / "b.db"])
     found = status(file)
     assert found["conflicts"] == 1
-    assert "1 rows of other stores in conflict" in as_text(found)
+    assert "1 rows of merged stores had another outcome" in as_text(found)
 
 
 def test_a_missing_store_is_an_error(tmp_path):

@@ -5,6 +5,8 @@ import pytest
 import shapely
 
 from suite.dynamic.settings import world_settings
+from suite.dynamic.trajectory import make_trajectory
+from suite.dynamic.world import World
 from suite.dynamics import as_properties
 from suite.errors import SceneError
 from suite.exact import shortest_path
@@ -41,6 +43,17 @@ def test_start_and_goal_are_free_at_time_0(scene):
     solid = scene_at(scene, 0.0).arrangement.solid
     for end in (scene.query().start, scene.query().goal):
         assert solid.distance(shapely.Point(end)) >= 0.99
+
+
+def test_at_first_the_robot_has_a_way_in_what_it_knows(scene):
+    still = make_trajectory([(0.0, *scene.query().start)])
+    known = World(scene, world_settings(scene)).look(still)
+    assert np.isfinite(shortest_path(known, scene.query()).length)
+
+
+def test_some_robots_have_no_way_once_all_is_known():
+    ways = [shortest_path(scene_at(s, 0.0), s.query()).path for s in map(moving, SEEDS)]
+    assert {way is None for way in ways} == {True, False}
 
 
 def test_some_obstacles_stay_and_some_change(scene):
