@@ -65,8 +65,8 @@ def tables(
 ) -> None:
     """Print the tables of a store: a summary, comparisons, and the paper's figures beside ours.
 
-    As text, tables of the rows behind another table are left out unless --only asks for them; a
-    last line names them. LaTeX needs the packages booktabs, graphicx and longtable.
+    Tables of the rows behind another table come as CSV, and otherwise only if --only asks for them;
+    a last line names them. LaTeX needs the packages booktabs, graphicx and longtable.
 
     Example: kbga-bench tables out/paper.db --format markdown
 
@@ -76,16 +76,17 @@ def tables(
     from suite.report.table import Format, named, render
 
     found = named(read_tables(store, reference), only or [])
+    hides = style is not TableFormat.CSV and not only
+    hidden = [table.name for table in found if table.detail and hides]
+    shown = [table for table in found if table.name not in hidden]
     if output is not None:
-        for path in write_tables(found, output, Format(style)):
+        for path in write_tables(shown, output, Format(style)):
             typer.echo(path)
-        return
-    left_out = style is TableFormat.TABLE and not only
-    hidden = [table.name for table in found if table.detail and left_out]
-    shown = [render(table, Format(style)) for table in found if table.name not in hidden]
+    else:
+        typer.echo("\n".join(render(table, Format(style)) for table in shown), nl=False)
     if hidden:
-        shown.append(f"Not printed, but with --only or --output: {', '.join(hidden)}.\n")
-    typer.echo("\n".join(shown), nl=False)
+        text = f"Left out, but with --only or --format csv: {', '.join(hidden)}."
+        typer.echo(f"\n{text}", err=output is not None or style is not TableFormat.TABLE)
 
 
 def compare(

@@ -59,8 +59,9 @@ def write_results(
 ) -> list[Path]:
     """Make a results folder from a store; the same store gives the same bytes.
 
-    There are figures of each study and of how the planners compare, and one of the best paths for
-    each scene, where a reader can still tell them apart.
+    Tables of the rows behind another table are CSV only, for nobody reads hundreds of lines. There
+    are figures of each study and of how the planners compare, and one of the best paths for each
+    scene, where a reader can still tell them apart.
 
     Parameters
     ----------
@@ -90,7 +91,7 @@ def write_results(
     scenes = _scenes(current)
     folder = made_folder(directory)
     tables = read_tables(store)
-    files = write_tables(tables, folder, Format.MARKDOWN)
+    files = write_tables([t for t in tables if not t.detail], folder, Format.MARKDOWN)
     files += write_tables(tables, folder, Format.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
     compares = COMPARISONS not in leave_out

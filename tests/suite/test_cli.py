@@ -347,7 +347,7 @@ def test_tables_in_every_format(kbga_bench, filled, tmp_path):
     assert "Median gap (%) after a fixed wall time" in text
     # The rows behind them are too many to be read.
     assert "What it takes to come" not in text
-    assert "with --only or --output: summary-rows, ranking-rows, fixed-target-rows" in text
+    assert "with --only or --format csv: summary-rows, ranking-rows, fixed-target-rows" in text
     csv = kbga_bench("tables", filled, "--format", "csv").out
     assert csv.startswith("scene,planner,runs,solved")
     assert "scene,planner,target (%),runs,reached,reached (%),time median (ms)" in csv
@@ -355,7 +355,9 @@ def test_tables_in_every_format(kbga_bench, filled, tmp_path):
     assert r"\begin{tabular}" in kbga_bench("tables", filled, "--format", "latex").out
     kbga_bench("tables", filled, "--format", "markdown", "--output", tmp_path / "t")
     assert (tmp_path / "t" / "summary.md").exists()
-    assert (tmp_path / "t" / "summary-rows.md").exists()
+    assert not (tmp_path / "t" / "summary-rows.md").exists()
+    kbga_bench("tables", filled, "--format", "csv", "--output", tmp_path / "t")
+    assert (tmp_path / "t" / "summary-rows.csv").exists()
 
 
 def test_of_the_tables_those_asked_for_are_printed_also_the_long_ones(kbga_bench, filled):
