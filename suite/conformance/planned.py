@@ -120,8 +120,9 @@ def path_is_free(subject: Subject) -> Outcome:
         return Finding(
             f"{trial.label}: {trial.verdict.reason}",
             "a path that touches obstacles at most",
-            "Check each segment with suite.geometry.kernels.first_collision(path, scene.arrays): "
-            "it means by free what the referee means.",
+            "Check it with suite.geometry.kernels.first_collision(path, scene.arrays), which means "
+            "by free what the referee means; the whole path, for segment by segment no bend is "
+            "seen that slips through a point in which two obstacles touch.",
         )
 
     return _first(subject, judge)
