@@ -66,11 +66,15 @@ perf: setup
 STUDIES := resolution obstacles kbga-rounds ablation mutation-rate penalty first-population tuning
 CAMPAIGNS := paper-static paper-dynamic all-planners $(STUDIES)
 PAPER := paper-static paper-dynamic resolution
-$(STUDIES:%=results-%): LEAVE := --leave-out comparisons --leave-out paths --leave-out traces
-# Its traces stand behind the figures of the paper.
-results-resolution: LEAVE := --leave-out comparisons --leave-out paths
+NO_ROWS := --leave-out paths --leave-out traces
+# What stands in paper-static is not drawn again, and a study has a figure of its own.
+NO_PICTURES := --leave-out comparisons --leave-out paper-pictures
+$(STUDIES:%=results-%): LEAVE := $(NO_ROWS) $(NO_PICTURES)
+# The paper's Figure 13, and traces that stand behind the figures of the paper.
+results-ablation: LEAVE := $(NO_ROWS) --leave-out comparisons
+results-resolution: LEAVE := --leave-out paths $(NO_PICTURES)
 results-paper-dynamic: LEAVE := --leave-out paths
-results-all-planners: LEAVE := --leave-out paths --leave-out traces
+results-all-planners: LEAVE := $(NO_ROWS) --leave-out paper-pictures
 
 results: $(CAMPAIGNS:%=results-%)
 	rm -f out/paper.db

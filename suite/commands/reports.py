@@ -42,12 +42,13 @@ class FigureFormat(StrEnum):
 
 
 class Part(StrEnum):
-    """What a results folder can do without: rows, and pictures of how the planners compare."""
+    """What a results folder can do without: rows, and pictures that stand in another folder."""
 
     EVENTS = "events"
     TRACES = "traces"
     PATHS = "paths"
     COMPARISONS = "comparisons"
+    PAPER_PICTURES = "paper-pictures"
 
 
 def tables(
@@ -151,7 +152,7 @@ def results(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where to; made if missing.")],
     leave_out: Annotated[
         list[Part] | None,
-        typer.Option(help="Rows, or comparisons (pictures), that are not written; repeatable."),
+        typer.Option(help="Rows, or pictures of these kinds, that are not written; repeatable."),
     ] = None,
     figures: Annotated[
         FigureFormat, typer.Option(help="Kind of the figures; pdf and svg are vectors.")

@@ -47,8 +47,8 @@ from suite.store import (
 
 MANIFEST = "manifest.json"
 
-COMPARISONS = "comparisons"
-"""Name of the pictures of how planners compare, where they are left out."""
+COMPARISONS, PAPER_PICTURES = "comparisons", "paper-pictures"
+"""Names of the pictures that can be left out: how planners compare, and what the paper shows."""
 
 REPLANNING = "replanning"
 """Name of the figure of simulated runs."""
@@ -70,7 +70,8 @@ def write_results(
         Made if it is missing; files of the same names are replaced.
     leave_out : collection of str
         Rows that are not written, for they are too many (``events``, ``traces``, ``paths``), and
-        pictures (``comparisons``: of how the planners compare). The manifest names them.
+        pictures (``comparisons``: of how the planners compare; ``paper-pictures``: like those of
+        the paper). The manifest names them.
     figures : str
         ``png``, or the vectors ``pdf`` and ``svg``.
 
@@ -94,8 +95,7 @@ def write_results(
     files = write_tables([t for t in tables if not t.detail], folder, Format.MARKDOWN)
     files += write_tables(tables, folder, Format.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
-    compares = COMPARISONS not in leave_out
-    for name, figure in _figures(store, current, scenes, compares=compares):
+    for name, figure in _figures(store, current, scenes, leave_out):
         file = folder / f"{name}.{figures}"
         save(figure, file)
         files.append(file)
@@ -165,15 +165,19 @@ def _scenes(runs: pd.DataFrame) -> list[tuple[Scene, Query]]:
 
 
 def _figures(
-    store: Path, current: pd.DataFrame, scenes: list[tuple[Scene, Query]], *, compares: bool
+    store: Path,
+    current: pd.DataFrame,
+    scenes: list[tuple[Scene, Query]],
+    leave_out: Collection[str],
 ) -> Iterator[tuple[str, Figure]]:
-    """All figures, each with the name of its file; if wanted, those of how planners compare."""
+    """The figures that are wanted, each with the name of its file."""
     planned, driven = current[~is_simulated(current)], current[is_simulated(current)]
     paths = read_paths(store)
     yield from study_figures(planned).items()
-    if compares:
+    if COMPARISONS not in leave_out:
         yield from _comparisons(steps_of(planned, read_events(store)))
-    yield from paper_pictures(planned, paths, read_snapshots(store), scenes).items()
+    if PAPER_PICTURES not in leave_out:
+        yield from paper_pictures(planned, paths, read_snapshots(store), scenes).items()
     yield from _scene_figures(planned, paths, scenes)
     if not driven.empty:
         yield REPLANNING, plot_replanning(driven, read_replans(store))

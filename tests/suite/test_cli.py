@@ -427,6 +427,17 @@ def test_pictures_of_how_planners_compare_are_left_out_where_there_are_others(
     assert [picture.name for picture in (tmp_path / "r").glob("*.png")] == ["wall.png"]
 
 
+def test_pictures_like_the_papers_are_left_out_where_they_stand_elsewhere(kbga_bench, tmp_path):
+    (tmp_path / "m.toml").write_text(
+        'scenes = ["zigzag"]\nseeds = 1\n[[planner]]\nplanner = "kbga"\n'
+    )
+    kbga_bench("run", tmp_path / "m.toml", "--store", tmp_path / "s.db")
+    for folder, options in (("all", ()), ("some", ("--leave-out", "paper-pictures"))):
+        kbga_bench("results", tmp_path / "s.db", tmp_path / folder, *options)
+    more, less = ({p.name for p in (tmp_path / f).glob("*.png")} for f in ("all", "some"))
+    assert more - less == {"paper-fig-8-zigzag.png"}
+
+
 def test_a_scene_with_more_planners_than_can_be_told_apart_has_no_picture(
     kbga_bench, wall_file, tmp_path
 ):
