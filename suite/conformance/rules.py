@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 
-from suite.conformance import budgets, declared, left_alone, planned, repeated
+from suite.conformance import budgets, declared, elsewhere, left_alone, planned, repeated
 from suite.conformance.finding import Finding, Kind, NotApplicable, Result
 from suite.conformance.subject import Subject
 
@@ -38,6 +38,7 @@ RULES: tuple[Rule, ...] = (
     repeated.same_seed_same_path,
     repeated.another_seed_another_stream,
     repeated.keeps_no_state,
+    elsewhere.same_path_in_another_process,
     budgets.keeps_generations,
     budgets.keeps_checks,
     budgets.keeps_wall_time,

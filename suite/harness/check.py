@@ -15,6 +15,7 @@ from typing import Any
 
 import psutil
 
+from suite.conformance.elsewhere import same_path_in_another_process
 from suite.conformance.finding import Finding, Kind, Result
 from suite.conformance.planned import warms_up
 from suite.conformance.rules import RULES, Rule, apply, claim_of, rule_name
@@ -127,8 +128,8 @@ def _collected(
 
 
 def _is_warm(doing: int) -> bool:
-    """Whether all is compiled that will be."""
-    return doing > RULES.index(warms_up)
+    """Whether all is compiled that will be; another process begins anew."""
+    return doing > RULES.index(warms_up) and RULES[doing] is not same_path_in_another_process
 
 
 def _late(patience_s: float) -> Finding:

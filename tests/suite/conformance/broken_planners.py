@@ -524,6 +524,38 @@ class Learns(Detours):
         return super().plan(scene, query, budget, rng, recorder)
 
 
+class GoesThroughASetOfStrings(Detours):
+    """same-path-in-another-process"""
+
+    name = "goes-through-a-set-of-strings"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        order = {obstacle.name for obstacle in scene.obstacles}
+        own = np.random.default_rng([int(rng.integers(1000)), *"".join(order).encode()])
+        return super().plan(scene, query, budget, own, recorder)
+
+
+class SeedsWithItsProcess(Detours):
+    """same-path-in-another-process"""
+
+    name = "seeds-with-its-process"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        own = np.random.default_rng([int(rng.integers(1000)), os.getpid()])
+        return super().plan(scene, query, budget, own, recorder)
+
+
+class DiesInAnotherProcess(Detours):
+    """same-path-in-another-process"""
+
+    name = "dies-in-another-process"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        if os.environ.get("PYTHONHASHSEED") == "1":  # the tests do not run with it
+            os._exit(5)
+        return super().plan(scene, query, budget, rng, recorder)
+
+
 # Budgets
 
 
