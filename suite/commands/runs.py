@@ -183,6 +183,7 @@ def rerun(
     debug: Annotated[
         bool, typer.Option("--pdb", help="Enter the debugger where an exception is raised.")
     ] = False,
+    plugin: PluginOption = None,
     style: TextStyle = TextFormat.TEXT,
 ) -> None:
     """Repeat one row from its own record, in this process, and compare the paths.
@@ -196,6 +197,7 @@ def rerun(
     from suite.harness.rerun import cell_of, compare
     from suite.harness.single import as_data, as_text
 
+    use_plugins(plugin)
     cell = cell_of(store, row)
     if debug:
         import pdb
