@@ -16,6 +16,7 @@ CONCRETE = [
     if kind.__module__ == broken_planners.__name__ and "name" in vars(kind)
 ]
 SLOW = (same_path_in_another_process,)
+REPLANNED = [rule for rule in RULES if rule_name(rule).startswith("replans-")]
 BROKEN = [kind for kind in CONCRETE if kind is not broken_planners.Detours]
 
 
@@ -32,6 +33,17 @@ def quick_rules(planner_class):
 
 def test_the_planner_that_the_broken_ones_are_made_of_breaks_no_rule():
     assert named(broken_planners.Detours) == {}
+
+
+def test_the_replanner_that_the_broken_ones_are_made_of_breaks_no_rule():
+    results = {rule_name(r): apply(r, Subject(broken_planners.Replans)) for r in REPLANNED}
+    assert len(results) == 5
+    assert {r.kind for r in results.values()} == {Kind.KEPT}
+
+
+def test_rules_about_replanners_say_nothing_of_who_plans_afresh():
+    results = [apply(rule, Subject(broken_planners.Detours)) for rule in REPLANNED]
+    assert {r.kind for r in results} == {Kind.NOT_APPLICABLE}
 
 
 @pytest.mark.parametrize("planner_class", BROKEN, ids=lambda kind: kind.__name__)
