@@ -92,9 +92,13 @@ def plan(
 
 
 def check(
-    planner: Annotated[
-        str, typer.Argument(metavar="PLANNER", help="Name of the planner; see `list planners`.")
-    ],
+    planners: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="PLANNER...", help="Names of planners; see `list planners`."),
+    ] = None,
+    every: Annotated[
+        bool, typer.Option("--all", help="All that are installed; what is unavailable is named.")
+    ] = False,
     settings: SettingsOption = None,
     plugin: PluginOption = None,
     limit_s: Annotated[
@@ -102,23 +106,52 @@ def check(
     ] = 30.0,
     style: TextStyle = TextFormat.TEXT,
 ) -> None:
-    """Check that a planner keeps the plugin contract, rule by rule.
+    """Check that planners keep the plugin contract, rule by rule.
 
-    Exit code 0 if it does, 1 if a rule is broken; what to do about it stands with each rule.
+    Exit code 0 if they do, 1 if a rule is broken, or if one that was named is unavailable; what to
+    do about it stands with each rule.
 
     Example: kbga-bench check kbga --set population_size=20
+
+    Example: kbga-bench check kbga ompl-rrtstar
     """
     from suite.conformance.report import as_data, as_text, broken
     from suite.harness.check import check as apply_rules
     from suite.harness.single import parse_settings
+    from suite.plugins import planner_names
 
     use_plugins(plugin)
-    results = apply_rules(planner, parse_settings(settings or []), limit_s)
+    names = planners or []
+    if every == bool(names):
+        raise typer.BadParameter("Give names of planners, or --all.")
+    if settings and len(names) != 1:
+        raise typer.BadParameter("It is for one planner: check that by itself.", param_hint="--set")
+    if len(names) != 1:
+        kept = _check_several(planner_names() if every else names, limit_s, style, lenient=every)
+        raise typer.Exit(0 if kept else 1)
+    results = apply_rules(names[0], parse_settings(settings or []), limit_s)
     if style is TextFormat.JSON:
-        print_json(as_data(planner, results))
+        print_json(as_data(names[0], results))
     else:
-        typer.echo(as_text(planner, results))
+        typer.echo(as_text(names[0], results))
     raise typer.Exit(1 if broken(results) else 0)
+
+
+def _check_several(names: list[str], limit_s: float, style: TextFormat, *, lenient: bool) -> bool:
+    """Print each when it is done, and a line for each at the end; whether all is well."""
+    from suite.conformance.report import as_text
+    from suite.harness.check import check_each
+
+    done = []
+    for checked in check_each(names, limit_s):
+        done.append(checked)
+        if style is TextFormat.TEXT and checked.unavailable is None:
+            typer.echo(f"{as_text(checked.planner, checked.results)}\n")
+    if style is TextFormat.JSON:
+        print_json([checked.as_data for checked in done])
+    else:
+        typer.echo("\n".join(checked.line for checked in done))
+    return all(lenient if checked.kept is None else checked.kept for checked in done)
 
 
 def new_planner(

@@ -195,6 +195,7 @@ def rerun(
     debug: Annotated[
         bool, typer.Option("--pdb", help="Enter the debugger where an exception is raised.")
     ] = False,
+    plugin: PluginOption = None,
     style: TextStyle = TextFormat.TEXT,
 ) -> None:
     """Repeat one row from its own record, in this process, and compare the paths.
@@ -209,6 +210,7 @@ def rerun(
     from suite.harness.row_names import cell_of
     from suite.harness.single import as_data, as_text
 
+    use_plugins(plugin)
     cell = cell_of(store, row)
     if debug:
         import pdb

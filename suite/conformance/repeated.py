@@ -1,6 +1,8 @@
 """Rules about runs that are repeated: the seed decides everything, and nothing else does."""
 
+from functools import lru_cache
 from itertools import combinations
+from typing import Any
 
 from suite.conformance.finding import Finding, NotApplicable
 from suite.conformance.subject import SEED, Subject, Trial
@@ -9,11 +11,15 @@ Outcome = Finding | NotApplicable | None
 
 VARIED = ("one wall", "narrow gap", "500 obstacles")
 SEEDS = (1, 2, 3, 4)
+SUBJECTS = 4
+"""How many are kept in mind: rules that build on others ask for the same runs again."""
+
 TIMED = NotApplicable("it keeps no budget but wall time, and timed runs need not repeat.")
 UNREPEATED = NotApplicable("two runs with the same seed differ already.")
 UNPLANNED = NotApplicable("not all runs end with a plan.")
 
 
+@lru_cache(maxsize=SUBJECTS)
 def same_seed_same_path(subject: Subject) -> Outcome:
     """The same seed and counted budget give the same run, to the last bit."""
     hindrance = _hindrance(subject)
@@ -23,7 +29,7 @@ def same_seed_same_path(subject: Subject) -> Outcome:
         one, other = subject.trial(scene), subject.trial(scene)
         if one.outcome != other.outcome:
             return Finding(
-                f"{one.label}: two runs differ in {difference(one, other)}",
+                f"{one.label}: two runs differ in {difference(one.outcome, other.outcome)}",
                 "the same path, counts and reports",
                 "Draw from the `rng` that plan is given and from nothing else; do not iterate "
                 "over sets, and let no clock decide where the budget is counted.",
@@ -75,6 +81,7 @@ def _no_stream(seeds: tuple[int, ...], drew: bool) -> Finding:
     )
 
 
+@lru_cache(maxsize=SUBJECTS)
 def keeps_no_state(subject: Subject) -> Outcome:
     """A planner that has run before, elsewhere, gives the same run as the very first one."""
     found = same_seed_same_path(subject)
@@ -90,7 +97,7 @@ def keeps_no_state(subject: Subject) -> Outcome:
         if fresh.outcome != again.outcome:
             return Finding(
                 f"{again.label}: a planner that had run before differs from a new one in "
-                f"{difference(fresh, again)}",
+                f"{difference(fresh.outcome, again.outcome)}",
                 "the same path, counts and reports",
                 "Keep what belongs to a run in local variables of plan, not in self, in the class "
                 "or in the module.",
@@ -105,10 +112,10 @@ def _hindrance(subject: Subject) -> NotApplicable | None:
     return UNPLANNED if any(trial.plan is None for trial in subject.trials) else None
 
 
-def difference(one: Trial, other: Trial) -> str:
-    """What two runs differ in, in words."""
-    if one.plan is None or other.plan is None:
-        return "whether they end well"
+def difference(one: tuple[Any, ...], other: tuple[Any, ...]) -> str:
+    """What two outcomes of :class:`Trial` differ in, in words."""
     names = ("status", "path", "generations", "checks", "reports")
-    pairs = zip(names, one.outcome, other.outcome, strict=True)
+    if len(one) != len(names) or len(other) != len(names):
+        return "whether they end well"
+    pairs = zip(names, one, other, strict=True)
     return ", ".join(name for name, mine, yours in pairs if mine != yours)

@@ -36,7 +36,7 @@ def as_data(planner: str, results: Sequence[Result]) -> dict[str, Any]:
 def as_text(planner: str, results: Sequence[Result]) -> str:
     """A line for each rule; more for those that are broken."""
     lines = [_line(result) for result in results]
-    return "\n".join([*lines, "", _summary(planner, results)])
+    return "\n".join([*lines, "", summary(planner, results)])
 
 
 def _line(result: Result) -> str:
@@ -56,7 +56,8 @@ def _indented(text: str) -> str:
     return text.replace("\n", "\n" + " " * (2 * WIDTH + 2))
 
 
-def _summary(planner: str, results: Sequence[Result]) -> str:
+def summary(planner: str, results: Sequence[Result]) -> str:
+    """One line: how many rules are broken, and how many say nothing of it."""
     count = {kind: sum(result.kind is kind for result in results) for kind in Kind}
     applied = len(results) - count[Kind.NOT_APPLICABLE]
     others = f", {count[Kind.NOT_APPLICABLE]} do not apply" if count[Kind.NOT_APPLICABLE] else ""

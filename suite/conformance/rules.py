@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 
-from suite.conformance import budgets, declared, left_alone, planned, repeated
+from suite.conformance import budgets, declared, elsewhere, left_alone, planned, repeated, replanned
 from suite.conformance.finding import Finding, Kind, NotApplicable, Result
 from suite.conformance.subject import Subject
 
@@ -38,10 +38,16 @@ RULES: tuple[Rule, ...] = (
     repeated.same_seed_same_path,
     repeated.another_seed_another_stream,
     repeated.keeps_no_state,
+    elsewhere.same_path_in_another_process,
     budgets.keeps_generations,
     budgets.keeps_checks,
     budgets.keeps_wall_time,
     budgets.ends_or_refuses_whatever_the_budget,
+    replanned.replans_end_with_a_plan,
+    replanned.replans_suit_what_is_known,
+    replanned.replans_keep_budgets,
+    replanned.replans_repeat,
+    replanned.replans_leave_things_alone,
 )
 
 WARNINGS: frozenset[Rule] = frozenset({planned.claimed_cost_is_the_length})

@@ -7,7 +7,7 @@ path is judged. The scene that it is given is its own: the judge has another.
 import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -21,7 +21,7 @@ from suite.global_generators import seed_globals
 from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder, refusal
 from suite.referee import Referee, Verdict
 from suite.reported import as_count
-from suite.scene import Scene
+from suite.scene import Query, Scene
 
 CLAIMABLE = (PlanStatus.SOLVED, PlanStatus.INFEASIBLE, PlanStatus.EXHAUSTED)
 SEED = 1
@@ -212,18 +212,45 @@ class Subject:
     ) -> Trial:
         """One run, by a new planner or by one that is given; kept by nobody."""
         budget, rng = budget or self.ordinary, np.random.default_rng([seed, 2003])
-        self._on_run(run_in_words(scene, seed, budget))
         given = _lent.get(scene.name) or _lent.setdefault(scene.name, scene.build())
+        build = self.build if planner is None else lambda: planner
+        query = asked(given)
+        trial = self.watched(
+            scene, budget, seed, rng, given, query, lambda: _run(build, given, budget, rng)
+        )
+        if trial.scene_changed:
+            del _lent[scene.name]
+        return trial
+
+    def watched(
+        self,
+        scene: SmallScene,
+        budget: Budget,
+        seed: int,
+        rng: np.random.Generator,
+        given: Scene,
+        query: Query,
+        run: Callable[[], Run],
+    ) -> Trial:
+        """Do a run, and say what it did beside; what it changed is put back, but for the scene.
+
+        Parameters
+        ----------
+        scene : SmallScene
+            By which it is judged; ``given`` and ``query`` are what it takes.
+        budget, seed, rng : what it takes, too.
+        run : callable
+            Does it.
+        """
+        self._on_run(run_in_words(scene, seed, budget))
         outer, stream = Surroundings.now(), str(rng.bit_generator.state)
         seed_globals(seed)
-        before, drawn = Surroundings.now(), fingerprint(given, asked(given))
-        run = _run(self.build if planner is None else lambda: planner, given, budget, rng)
-        after, changed = Surroundings.now(), fingerprint(given, asked(given)) != drawn
+        before, drawn = Surroundings.now(), fingerprint(given, query)
+        done = run()
+        after, changed = Surroundings.now(), fingerprint(given, query) != drawn
         outer.restore()
-        if changed:
-            del _lent[scene.name]
         drew = str(rng.bit_generator.state) != stream
-        return Trial(scene, budget, seed, run, drew, changed, before, after)
+        return Trial(scene, budget, seed, done, drew, changed, before, after)
 
 
 def _run(
@@ -239,15 +266,26 @@ def _run(
         prepared = tuple(k for k, v in vars(planner).items() if k not in had or v is not had[k])
         if reason is not None:
             return Run(recorder, refusal=reason, prepared=prepared)
-        recorder.start_clock()
-        started = recorder.started
-        returned = planner.plan(scene, query, budget, rng, recorder)
-        wall_s = time.perf_counter() - started
-        restarted = recorder.started != started
-        return Run(recorder, None, returned, None, wall_s, prepared, restarted)
+        done = timed(lambda: planner.plan(scene, query, budget, rng, recorder), recorder)
+        return replace(done, prepared=prepared)
     except (Exception, SystemExit):  # other people's code: it may raise anything
-        lines = traceback.format_exc().strip().splitlines()[-TRACEBACK_LINES:]
-        return Run(recorder, error="\n".join(lines))
+        return failed(recorder)
+
+
+def timed(plan: Callable[[], Any], recorder: Recorder) -> Run:
+    """Plan within the clock; whatever is raised passes."""
+    recorder.start_clock()
+    started = recorder.started
+    returned = plan()
+    wall_s = time.perf_counter() - started
+    restarted = recorder.started != started
+    return Run(recorder, None, returned, None, wall_s, restarted=restarted)
+
+
+def failed(recorder: Recorder) -> Run:
+    """The run that has just raised an exception."""
+    lines = traceback.format_exc().strip().splitlines()[-TRACEBACK_LINES:]
+    return Run(recorder, error="\n".join(lines))
 
 
 def form_of(returned: Any) -> str | None:
@@ -297,12 +335,12 @@ def run_in_words(scene: SmallScene, seed: int, budget: Budget) -> str:
     return f"on '{scene.name}' with seed {seed} and Budget({inner})"
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=32)
 def _pristine(scene: SmallScene) -> Scene:
     """A scene that no planner has in its hands."""
     return scene.build()
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=32)
 def _referee(scene: SmallScene) -> Referee:
     return Referee(_pristine(scene))

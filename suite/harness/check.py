@@ -8,13 +8,15 @@ import contextlib
 import multiprocessing
 import os
 import signal
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from typing import Any
 
 import psutil
 
+from suite.conformance import report
+from suite.conformance.elsewhere import same_path_in_another_process
 from suite.conformance.finding import Finding, Kind, Result
 from suite.conformance.planned import warms_up
 from suite.conformance.rules import RULES, Rule, apply, claim_of, rule_name
@@ -77,6 +79,60 @@ def check(
         process.join(REAP_S)
 
 
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What came of one planner of several.
+
+    results : as :func:`check` returns them; none if it is unavailable.
+    unavailable : why nothing could be checked.
+    """
+
+    planner: str
+    results: Sequence[Result] = ()
+    unavailable: str | None = None
+
+    @property
+    def kept(self) -> bool | None:
+        """Whether no rule is broken; None if it is unavailable."""
+        return None if self.unavailable is not None else not report.broken(self.results)
+
+    @property
+    def line(self) -> str:
+        """What came of it in a line."""
+        return self.unavailable or report.summary(self.planner, self.results)
+
+    @property
+    def as_data(self) -> dict[str, Any]:
+        """All of it as plain data."""
+        told = report.as_data(self.planner, self.results)
+        return {**told, "kept": self.kept, "unavailable": self.unavailable}
+
+
+def check_each(planners: Sequence[str], limit_s: float = LIMIT_S) -> Iterator[Checked]:
+    """Check several planners with their own settings, one after the other.
+
+    Parameters
+    ----------
+    planners : sequence of str
+        Their names.
+    limit_s : float
+        As in :func:`check`.
+
+    Raises
+    ------
+    PluginError
+        If there is no planner of one of the names, before any is checked. One that can't be
+        loaded stops nobody else.
+    """
+    for planner in set(planners) - set(planner_names()):
+        load_planner(planner)  # raises, and says which there are
+    for planner in dict.fromkeys(planners):
+        try:
+            yield Checked(planner, check(planner, limit_s=limit_s))
+        except PluginError as error:
+            yield Checked(planner, unavailable=str(error))
+
+
 def _examine(planner: str, settings: Mapping[str, Any], sender: "Connection[Any, None]") -> None:
     """Send the number of each rule, the label of each run, and then the rule's result."""
     os.setsid()
@@ -127,8 +183,8 @@ def _collected(
 
 
 def _is_warm(doing: int) -> bool:
-    """Whether all is compiled that will be."""
-    return doing > RULES.index(warms_up)
+    """Whether all is compiled that will be; another process begins anew."""
+    return doing > RULES.index(warms_up) and RULES[doing] is not same_path_in_another_process
 
 
 def _late(patience_s: float) -> Finding:

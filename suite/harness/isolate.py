@@ -280,7 +280,9 @@ def _server_environment(warmth: Warmth) -> Iterator[None]:
     """The settings that a fork server started now inherits; variables are put back afterwards."""
     # The warm-up comes last: it leaves alone, for good, what is loaded by then.
     _CONTEXT.set_forkserver_preload([run_in_child.__module__, Warmth.__module__])
-    wanted = replace(warmth, main=_main_module()).environment()
+    # A planner that goes through sets of strings then repeats itself from one server to the next.
+    salt = {"PYTHONHASHSEED": os.environ.get("PYTHONHASHSEED", "0")}
+    wanted = salt | replace(warmth, main=_main_module()).environment()
     before = {name: os.environ.get(name) for name in wanted}
     os.environ.update(wanted)
     try:

@@ -7,7 +7,7 @@ import tomllib
 import pytest
 
 from suite.conformance.finding import Kind
-from suite.conformance.rules import examine
+from suite.conformance.rules import RULES, examine
 from suite.conformance.subject import Subject
 from suite.errors import PluginError
 from suite.new_planner import write_new_planner
@@ -52,7 +52,7 @@ def test_its_own_test_is_collected_with_a_test_for_each_rule(written):
         text=True,
     )
     assert "test_first_try.py::TestFirstTry::test_same_seed_same_path" in done.stdout
-    assert "30 tests collected" in done.stdout
+    assert f"{len(RULES)} tests collected" in done.stdout
 
 
 def test_its_files_pass_a_linter(written):

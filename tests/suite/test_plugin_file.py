@@ -157,8 +157,9 @@ def test_a_matrix_runs_it_in_other_processes_and_changed_code_runs_anew(file, wa
         '[[planner]]\nplanner = "visibility-graph"\n'
     )
 
-    def run():
-        arguments = ["run", matrix, "--store", store, "--jobs", "1", "--plugin", file]
+    def run(*words):
+        words = words or ("run", matrix, "--store", store, "--jobs", "1")
+        arguments = [*words, "--plugin", file]
         program = "from suite.cli import main; main()"
         return subprocess.run(
             [sys.executable, "-c", program, *map(str, arguments)],
@@ -172,6 +173,7 @@ def test_a_matrix_runs_it_in_other_processes_and_changed_code_runs_anew(file, wa
     runs = read_runs(store).set_index("variant")
     assert runs.loc["straight", "status"] == "invalid"  # it goes straight on, through the wall
     assert runs.loc["straight", "distribution"] == "my_planners.py"
+    assert "the same: invalid" in run("rerun", store, runs.loc["straight", "key"])
     file.write_text(CODE.replace("Plan(PlanStatus.SOLVED, ", "Plan(PlanStatus.EXHAUSTED, "))
     assert "1 ran now, 0 of these failed" in run()
     after = read_runs(store)

@@ -4,8 +4,9 @@ import inspect
 
 import pytest
 
+from suite.conformance.elsewhere import same_path_in_another_process
 from suite.conformance.finding import Kind
-from suite.conformance.rules import RULES, WARNINGS, examine, rule_name
+from suite.conformance.rules import RULES, WARNINGS, apply, rule_name
 from suite.conformance.subject import Subject
 from tests.suite.conformance import broken_planners
 
@@ -14,25 +15,56 @@ CONCRETE = [
     for _, kind in inspect.getmembers(broken_planners, inspect.isclass)
     if kind.__module__ == broken_planners.__name__ and "name" in vars(kind)
 ]
+SLOW = (same_path_in_another_process,)
+REPLANNED = [rule for rule in RULES if rule_name(rule).startswith("replans-")]
 BROKEN = [kind for kind in CONCRETE if kind is not broken_planners.Detours]
 
 
-def named(planner_class):
-    results = examine(Subject(planner_class))
+def named(planner_class, rules=RULES):
+    subject = Subject(planner_class)
+    results = [apply(rule, subject) for rule in rules]
     return {r.rule: r for r in results if r.kind in (Kind.BROKEN, Kind.WARNING)}
+
+
+def quick_rules(planner_class):
+    """All that start no process, which takes a second, and those that the planner breaks."""
+    return [rule for rule in RULES if rule not in SLOW or rule_name(rule) == planner_class.__doc__]
 
 
 def test_the_planner_that_the_broken_ones_are_made_of_breaks_no_rule():
     assert named(broken_planners.Detours) == {}
 
 
+def test_the_replanner_that_the_broken_ones_are_made_of_breaks_no_rule():
+    results = {rule_name(r): apply(r, Subject(broken_planners.Replans)) for r in REPLANNED}
+    assert len(results) == 5
+    assert {r.kind for r in results.values()} == {Kind.KEPT}
+
+
+def test_rules_about_replanners_say_nothing_of_who_plans_afresh():
+    results = [apply(rule, Subject(broken_planners.Detours)) for rule in REPLANNED]
+    assert {r.kind for r in results} == {Kind.NOT_APPLICABLE}
+
+
 @pytest.mark.parametrize("planner_class", BROKEN, ids=lambda kind: kind.__name__)
 def test_a_broken_planner_is_found_and_no_other_rule_is_named(planner_class):
-    found = named(planner_class)
+    found = named(planner_class, quick_rules(planner_class))
     assert list(found) == [planner_class.__doc__]
     (result,) = found.values()
     for sentence in (result.finding.found, result.finding.expected, result.finding.mend):
         assert sentence.strip()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "planner_class",
+    # What one learns that keeps it in its class, it has learnt from the tests above.
+    [kind for kind in BROKEN if kind is not broken_planners.Learns],
+    ids=lambda kind: kind.__name__,
+)
+def test_no_rule_that_takes_its_time_names_a_planner_that_keeps_it(planner_class):
+    rules = [rule for rule in SLOW if rule_name(rule) != planner_class.__doc__]
+    assert named(planner_class, rules) == {}
 
 
 def test_each_rule_has_a_planner_that_breaks_it():

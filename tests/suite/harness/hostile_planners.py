@@ -77,6 +77,17 @@ class Careless(_Base):
         return Plan(PlanStatus.SOLVED, path)
 
 
+class Salted(_Base):
+    """Goes by a place that the hash of a string decides."""
+
+    name = "salted"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        by = query.start + np.random.default_rng(abs(hash("north"))).random(2)
+        path = np.array([query.start, by, query.start, *self.path(scene, query)[1:]])
+        return Plan(PlanStatus.SOLVED, path)
+
+
 class CountsLateImports(_Base):
     """Says how many modules of the suite were loaded after the fork server was warmed."""
 

@@ -10,8 +10,10 @@ from pathlib import Path
 import psutil
 import pytest
 
+from suite.commands.options import TextFormat
+from suite.commands.planners import _check_several
 from suite.errors import PluginError
-from suite.harness.check import check
+from suite.harness.check import check, check_each
 
 BROKEN = Path(__file__).parents[1] / "conformance" / "broken_planners.py"
 HANGING = """
@@ -54,7 +56,7 @@ def kbga_bench(*arguments, code):
         [sys.executable, "-c", "from suite.cli import main; main()", *map(str, arguments)],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
     )
     assert done.returncode == code, done.stderr
     return done
@@ -64,7 +66,7 @@ def test_a_planner_that_keeps_the_contract_ends_with_code_0():
     done = kbga_bench(
         "check", "detours", "--plugin", f"{BROKEN}:Detours", "--set", "tries=20", code=0
     )
-    assert done.stdout.endswith("detours: keeps the contract, 31 rules, 1 do not apply.\n")
+    assert done.stdout.endswith("detours: keeps the contract, 32 rules, 6 do not apply.\n")
     assert "kept      same-seed-same-path\n" in done.stdout
 
 
@@ -119,3 +121,42 @@ def test_what_cannot_be_loaded_or_set_is_an_error_and_no_broken_rule(hostile):
     with pytest.raises(PluginError, match="no setting 'populaton'"):
         check("plain-ga", {"populaton": 3})
     assert os.environ.get("KBGA_BENCH_PLUGINS") is None
+
+
+def test_several_are_checked_and_each_has_a_line_at_the_end():
+    plugins = ("--plugin", f"{BROKEN}:Detours", "--plugin", f"{BROKEN}:BadName")
+    done = kbga_bench("check", "detours", "Bad Name", *plugins, code=1)
+    assert done.stdout.count("same-seed-same-path\n") == 2
+    assert done.stdout.splitlines()[-2:] == [
+        "detours: keeps the contract, 32 rules, 6 do not apply.",
+        "Bad Name: 1 of 32 rules broken, 6 do not apply.",
+    ]
+
+
+def test_of_several_one_that_cannot_be_loaded_is_named_and_stops_nobody(hostile):
+    told = {c.planner: c for c in check_each(["broken", "visibility-graph", "broken"])}
+    assert list(told) == ["broken", "visibility-graph"]
+    assert (told["broken"].kept, told["visibility-graph"].kept) == (None, True)
+    assert told["broken"].line.startswith("planner 'broken' is unavailable: ModuleNotFoundError")
+    assert told["broken"].as_data["rules"] == []
+    with pytest.raises(PluginError, match="no planner 'kgba'"):
+        next(check_each(["visibility-graph", "kgba"]))
+
+
+def test_one_that_is_named_and_unavailable_fails_and_one_that_is_only_there_does_not(hostile):
+    known = ["visibility-graph", "broken"]
+    for lenient, well in ((True, True), (False, False)):
+        assert _check_several(known, 30.0, TextFormat.JSON, lenient=lenient) is well
+
+
+def test_all_is_asked_for_without_names_and_settings_are_for_one():
+    assert "or --all" in kbga_bench("check", code=2).stderr
+    assert "or --all" in kbga_bench("check", "kbga", "--all", code=2).stderr
+    assert "--set" in kbga_bench("check", "--all", "--set", "tries=3", code=2).stderr
+
+
+@pytest.mark.slow
+def test_all_planners_that_are_installed_keep_the_contract():
+    told = json.loads(kbga_bench("check", "--all", "--format", "json", code=0).stdout)
+    assert {"kbga", "ompl-rrtstar", "visibility-graph"} <= {each["planner"] for each in told}
+    assert all(each["kept"] for each in told)

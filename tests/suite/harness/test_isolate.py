@@ -9,7 +9,7 @@ import pytest
 from suite.harness import warm
 from suite.harness.cell import build_planner
 from suite.harness.cores import honest_cores
-from suite.harness.isolate import run_isolated
+from suite.harness.isolate import run_isolated, stop_server
 from suite.harness.matrix import Limits
 from suite.harness.single import cell_for
 from suite.harness.warm import Warmth
@@ -41,6 +41,22 @@ def test_a_run_comes_back_whole(run):
 
 def test_another_process_finds_the_same_path(run):
     np.testing.assert_array_equal(run("wanderer").path, run("wanderer").path)
+
+
+def test_another_fork_server_gives_strings_the_same_hashes(run, monkeypatch):
+    monkeypatch.delenv("PYTHONHASHSEED", raising=False)
+    one = run("salted").path
+    stop_server()
+    np.testing.assert_array_equal(run("salted").path, one)
+
+
+def test_a_salt_that_the_user_gives_is_kept(run, monkeypatch):
+    one = run("salted").path
+    stop_server()
+    monkeypatch.setenv("PYTHONHASHSEED", "7")
+    other = run("salted").path
+    stop_server()  # the next one is for everybody
+    assert not np.array_equal(one, other)
 
 
 @pytest.mark.parametrize(
