@@ -23,6 +23,9 @@ Outcome = Finding | NotApplicable | None
 SCENES = ("one wall", "500 obstacles")
 """Few, as a process is started for them; in the second one, a set of obstacles is a large one."""
 
+ANSWER_S = 120
+"""What it may take, compilation included. Whoever waits for this rule must wait for longer."""
+
 PROGRAM = (
     "import sys; sys.path[:] = sys.argv[1:]; "
     "from suite.conformance.elsewhere import answer; answer()"
@@ -42,7 +45,10 @@ def same_path_in_another_process(subject: Subject) -> Outcome:
         request = pickle.dumps((subject.planner_class, subject.settings, SCENES))
     except Exception:  # pickle raises whatever a class's own hooks raise
         return NOT_FOUND
-    done = _asked_there(request)
+    try:
+        done = _asked_there(request)
+    except subprocess.TimeoutExpired:
+        return _differs(f"another process had not ended after {ANSWER_S} s")
     if done.returncode != 0:
         return _differs(f"another process ended with exit code {done.returncode}{_last(done)}")
     there: dict[str, Any] | None = pickle.loads(done.stdout)
@@ -77,6 +83,7 @@ def _asked_there(request: bytes) -> "subprocess.CompletedProcess[bytes]":
         capture_output=True,
         env={**os.environ, "PYTHONHASHSEED": salt},
         check=False,
+        timeout=ANSWER_S,
     )
 
 
