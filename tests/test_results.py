@@ -5,6 +5,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -96,6 +97,40 @@ def test_the_gaps_of_the_readme_are_those_of_the_summary():
             # Rounding may leave a zero with a sign.
             told = f"{round(row['gap mean (%)'], 2) + 0.0:.2f} %{some}"
             assert cell == (told if solved else f"no path in {runs} runs"), scene
+
+
+EXACT = {"visibility-graph", "extremitypathfinder"}
+NEARER_THAN_KBGA = {
+    "unstructured": {
+        "ompl-informedrrtstar", "ompl-sorrtstar", "ompl-rrtstar", "ompl-aorrtc", "cmaes",
+    },
+    "maze": set(),
+    "zigzag": set(),
+    "double_u": set(),
+    "clustered": set(),
+    "obstacles_20": {"ompl-informedrrtstar", "ompl-sorrtstar", "grid-astar", "cmaes"},
+    "obstacles_30": {"ompl-informedrrtstar", "ompl-sorrtstar", "grid-astar"},
+    "obstacles_40": {"ompl-informedrrtstar", "ompl-sorrtstar"},
+}  # fmt: skip
+"""As the README tells it."""
+
+
+def test_what_the_readme_says_of_every_planner_is_so():
+    folder = RESULTS / "all-planners"
+    at = {"index": "scene", "columns": "planner"}
+    summary = pd.read_csv(folder / "summary.csv")
+    gaps = summary.pivot_table("gap median (%)", **at).drop(columns=sorted(EXACT))
+    for scene, told in NEARER_THAN_KBGA.items():
+        assert set(gaps.columns[gaps.loc[scene] < gaps.loc[scene, "kbga"]]) == told, scene
+    for scene in ("unstructured", "obstacles_20"):
+        assert gaps.loc[scene].idxmin() == "cmaes"
+    solved = summary.pivot_table("solved", **at)["cmaes"]
+    assert set(solved.index[solved == 0]) == {"maze", "zigzag", "clustered"}
+    ranks = pd.read_csv(folder / "ranking.csv")["planner"].tolist()
+    assert {*ranks[:2]} == EXACT
+    assert ranks[2] == "kbga"
+    times = pd.read_csv(folder / "ranking-rows.csv").pivot_table("time to 1 % median (ms)", **at)
+    assert set(times.columns[np.isfinite(times).all()]) == {*EXACT, "kbga"}
 
 
 def test_table_1_of_the_readme_is_that_of_the_results():
