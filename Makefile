@@ -70,9 +70,10 @@ NO_ROWS := --leave-out paths --leave-out traces
 # What stands in paper-static is not drawn again, and a study has a figure of its own.
 NO_PICTURES := --leave-out comparisons --leave-out paper-pictures
 $(STUDIES:%=results-%): LEAVE := $(NO_ROWS) $(NO_PICTURES)
-# The paper's Figure 13, and traces that stand behind the figures of the paper.
+# The paper's Figure 13 is of the ablation.
 results-ablation: LEAVE := $(NO_ROWS) --leave-out comparisons
-results-resolution: LEAVE := --leave-out paths $(NO_PICTURES)
+# Figures of the paper and of the study come out of these traces.
+results-resolution results-first-population: LEAVE := --leave-out paths $(NO_PICTURES)
 results-paper-dynamic: LEAVE := --leave-out paths
 results-all-planners: LEAVE := $(NO_ROWS) --leave-out paper-pictures
 
