@@ -23,7 +23,7 @@ from tests.strategies import scenes
 from tests.suite.harness.records import make_cell
 
 OTHERS = {
-    "cmaes": CmaEsPlanner(CmaEsSettings(waypoints=2, restarts=0)),
+    "cmaes": CmaEsPlanner(CmaEsSettings(waypoints=2, penalty=10.0, restarts=0)),
     "extremitypathfinder": ExtremityPlanner(),
     "grid-astar": GridAstarPlanner(GridAstarSettings(resolution=20)),
 }

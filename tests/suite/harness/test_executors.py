@@ -232,8 +232,8 @@ def test_what_a_worker_lacks_is_a_row_that_says_so(hostile, wall_file, tmp_path)
         assert record.host
         return record.reason
 
-    assert "has no planner 'nobody'. Install hostile 1.0 there" in row(planner="nobody")
-    assert "has wanderer 1.0. Install hostile 1.1 there" in row(version="1.1")
+    assert f"has no planner 'nobody'. Install hostile {here.version} there" in row(planner="nobody")
+    assert f"has wanderer {here.version}. Install hostile 1.1 there" in row(version="1.1")
     assert "can't be read" in row(scene_source=str(tmp_path / "elsewhere.geojson"))
 
 
