@@ -80,10 +80,15 @@ def planner_for_people(row: dict[str, Any]) -> dict[str, Any]:
     abilities = [name for name in ("anytime", "deterministic", "exact", "population") if row[name]]
     return {
         "name": row["name"],
-        "from": f"{row['distribution']} {row['version']}",
+        # Without the hash of its code, which is for programs.
+        "from": " ".join([row["distribution"], *_words_but_hashes(row["version"])]),
         "abilities": abilities if row["available"] else f"unavailable: {row['reason']}",
         "budgets": row["budgets"],
     }
+
+
+def _words_but_hashes(version: str) -> list[str]:
+    return [word for word in version.split() if not word.startswith("sha256-")]
 
 
 def matrix_for_people(row: dict[str, Any]) -> dict[str, Any]:

@@ -84,8 +84,9 @@ def test_a_plugin_that_cannot_be_imported_is_listed_with_the_reason(kbga_bench, 
 
 
 @pytest.mark.parametrize("what", ["scenes", "planners", "matrices"])
-def test_lists_for_people_fit_a_page_and_name_no_path(kbga_bench, what):
-    lines = kbga_bench("list", what).out.splitlines()
+def test_lists_for_people_fit_a_page_and_name_no_path(what):
+    # Other tests put plugins with long names into this process.
+    lines = in_own_process("list", what).out.splitlines()
     assert max(map(len, lines)) <= 102
     assert not any("/suite/" in line for line in lines)
     known = {"scenes": "zigzag", "planners": "kbga", "matrices": "paper-static"}[what]
