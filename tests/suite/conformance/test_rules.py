@@ -8,12 +8,13 @@ from suite.conformance.elsewhere import same_path_in_another_process
 from suite.conformance.finding import Kind
 from suite.conformance.rules import RULES, WARNINGS, apply, rule_name
 from suite.conformance.subject import Subject
-from tests.suite.conformance import broken_planners
+from tests.suite.conformance import broken_planners, broken_replanners
 
 CONCRETE = [
     kind
-    for _, kind in inspect.getmembers(broken_planners, inspect.isclass)
-    if kind.__module__ == broken_planners.__name__ and "name" in vars(kind)
+    for module in (broken_planners, broken_replanners)
+    for _, kind in inspect.getmembers(module, inspect.isclass)
+    if kind.__module__ == module.__name__ and "name" in vars(kind)
 ]
 SLOW = (same_path_in_another_process,)
 REPLANNED = [rule for rule in RULES if rule_name(rule).startswith("replans-")]
@@ -36,7 +37,7 @@ def test_the_planner_that_the_broken_ones_are_made_of_breaks_no_rule():
 
 
 def test_the_replanner_that_the_broken_ones_are_made_of_breaks_no_rule():
-    results = {rule_name(r): apply(r, Subject(broken_planners.Replans)) for r in REPLANNED}
+    results = {rule_name(r): apply(r, Subject(broken_replanners.Replans)) for r in REPLANNED}
     assert len(results) == 5
     assert {r.kind for r in results.values()} == {Kind.KEPT}
 
