@@ -2,7 +2,7 @@
 
 numba notices when the file of a cached function changes, but not when a function that it calls
 changes in another file: after an update, old machine code would go on running inside new. So there
-is one folder for each state of the sources, and its name is a hash of them.
+is one folder for each state of the files that kernels are made from, and its name is a hash of them.
 """
 
 import hashlib
@@ -26,12 +26,17 @@ inlined_kernel = njit(  # type: ignore[call-overload]
 """The same, pasted into each caller: for the few that are called for every segment."""
 
 _PACKAGES = ("suite", "kbga", "baselines")
+_MARKS = (b"suite.compiled", b"njit")
+"""What stands in each file that holds kernels."""
+_CONSTANTS = ("suite/geometry", "kbga")
+"""Folders whose other files hold what kernels read: tolerances, sizes, settings."""
+
 _KEPT = 4
 """Folders of older sources that stay, so that two checkouts side by side don't evict each other."""
 
 
 def use_cache_of_these_sources() -> Path:
-    """Point numba's cache at the folder that belongs to the sources as they are now.
+    """Point numba's cache at the folder that belongs to the kernels' sources as they are now.
 
     Returns
     -------
@@ -43,7 +48,10 @@ def use_cache_of_these_sources() -> Path:
         spec = find_spec(name)
         for root in (spec.submodule_search_locations or []) if spec else []:
             for source in sorted(Path(root).rglob("*.py")):
-                digest.update(source.read_bytes())
+                content = source.read_bytes()
+                place = source.relative_to(Path(root).parent).as_posix()
+                if place.startswith(_CONSTANTS) or any(mark in content for mark in _MARKS):
+                    digest.update(content)
     base = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
     top = (Path(base) if base else Path.home() / ".cache") / "kbga-bench"
     folder = top / digest.hexdigest()[:16]

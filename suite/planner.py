@@ -62,16 +62,19 @@ class Budget:
     """What a run may use; None means no limit. A planner keeps those that it can count.
 
     wall_s : float, seconds of wall time.
+    cpu_s : float, seconds of CPU time of the run's process.
     generations : int, generations (or iterations, for planners that iterate).
-    checks : int, collision checks of a segment against the scene.
+    checks : int, questions whether a segment is free, asked of the scene. One that a planner
+        answers from what it remembers is a question too: checks mean the same for everybody.
     """
 
     wall_s: float | None = None
     generations: int | None = None
     checks: int | None = None
+    cpu_s: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("wall_s", "generations", "checks"):
+        for name in ("wall_s", "generations", "checks", "cpu_s"):
             value = getattr(self, name)
             if value is not None and not value > 0:
                 raise ContractError(f"budget: {name} is {value}. It must be above 0, or left out.")
@@ -104,8 +107,10 @@ class Plan:
     claimed_cost : the planner's own idea of the path's length, metres.
     generations : generations or iterations until the run ended.
     generation_of_best : the one in which the returned path was first found.
-    checks : collision checks of a segment against the scene.
+    checks : questions asked whether a segment is free, as a budget of checks counts them.
     details : any further numbers that the planner wants to keep with its row.
+    computed_checks : those of them that were computed; the others were answered from memory. None
+        for a planner that remembers none: all of them.
     """
 
     status: PlanStatus
@@ -115,6 +120,7 @@ class Plan:
     generation_of_best: int | None = None
     checks: int | None = None
     details: Mapping[str, float] = field(default_factory=dict)
+    computed_checks: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
