@@ -142,7 +142,7 @@ def _counted(frame: pd.DataFrame, of: int) -> str:
     words = (AGREES, BETTER, WORSE, DIFFERS, NOT_COMPARABLE)
     told = ", ".join(f"{counts[word]} {word}" for word in words if word in counts)
     settings = int(counts.get(SETTING, 0))
-    beside = f"; {settings} settings beside" if settings else ""
+    beside = f"; {settings} setting{'s' * (settings > 1)} beside" if settings else ""
     missing = of - len(frame)
     rest = f" For {missing} more there are no such runs here." if missing else ""
     return f"{len(frame) - settings} figures: {told}{beside}.{rest}"
