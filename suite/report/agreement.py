@@ -11,6 +11,7 @@ Welch (1947), The generalization of Student's problem when several different pop
 are involved. Schuirmann (1987), two one-sided tests of equivalence. Fisher's exact test.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,22 +84,79 @@ def compare_means(ours: Sample, paper: Sample, level: float = LEVEL) -> Compared
     >>> compare_means(Sample(0.0, 0.0, 20), Sample(0.3, 1.2, 20)).word
     'not comparable'
     """
-    difference = ours.mean - paper.mean
-    parts = [s.sd**2 / s.runs for s in (ours, paper)]
-    if np.isnan(sum(parts)):
-        return Compared(NOT_COMPARABLE, float("nan"), float("nan"))
-    half = 0.0
-    if sum(parts) > 0.0:
-        freedom = sum(parts) ** 2 / sum(
-            part**2 / (s.runs - 1) for part, s in zip(parts, (ours, paper), strict=True)
-        )
-        half = float(stats.t.ppf((1.0 + level) / 2.0, freedom)) * float(np.sqrt(sum(parts)))
-    slack = ROUNDING * max(abs(ours.mean), abs(paper.mean))
+    return _compared(ours.mean - paper.mean, paper.mean, [ours, paper], level)
+
+
+def compare_contrasts(
+    ours: tuple[Sample, Sample], paper: tuple[Sample, Sample], level: float = LEVEL
+) -> Compared:
+    """Compare a difference of two means of ours with one of the paper's.
+
+    Parameters
+    ----------
+    ours, paper : (Sample, Sample)
+        The contrast is the second less the first.
+    level : float
+
+    Returns
+    -------
+    Compared
+        It agrees only if ours is told from none, too.
+
+    Examples
+    --------
+    >>> paper = Sample(156.0, 1.0, 20), Sample(250.0, 24.0, 20)
+    >>> small, large, none = (Sample(mean, 20.0, 20) for mean in (190.0, 245.0, 150.0))
+    >>> [compare_contrasts((Sample(156.0, 1.0, 20), o), paper).word for o in (small, large, none)]
+    ['differs', 'agrees', 'differs']
+    """
+    contrasts = [second.mean - first.mean for first, second in (ours, paper)]
+    compared = _compared(contrasts[0] - contrasts[1], contrasts[1], [*ours, *paper], level)
+    low, high = interval_of(*ours, level=level)
+    if compared.word == AGREES and low <= 0.0 <= high:
+        return Compared(NOT_COMPARABLE, compared.low, compared.high)
+    return compared
+
+
+def interval_of(first: Sample, second: Sample, level: float = LEVEL) -> tuple[float, float]:
+    """Welch's interval of the second mean less the first.
+
+    Returns
+    -------
+    low, high : float; nan where one run has no spread.
+    """
+    half = _half_width([first, second], level)
+    return second.mean - first.mean - half, second.mean - first.mean + half
+
+
+def _compared(
+    difference: float, size: float, samples: Sequence[Sample], level: float = LEVEL
+) -> Compared:
+    """The word for a difference between two figures, the paper's being of some size."""
+    half = _half_width(samples, level)
+    if np.isnan(half):
+        return Compared(NOT_COMPARABLE, half, half)
+    slack = ROUNDING * max(abs(sample.mean) for sample in samples)
     low, high = difference - half, difference + half
-    size = abs(paper.mean)
     if low > slack or high < -slack:
         return Compared(DIFFERS, low, high)
-    return Compared(AGREES if max(-low, high) < size else NOT_COMPARABLE, low, high)
+    return Compared(AGREES if max(-low, high) < abs(size) else NOT_COMPARABLE, low, high)
+
+
+def _half_width(samples: Sequence[Sample], level: float) -> float:
+    """Half the interval of a sum or difference of means, with Satterthwaite's degrees of freedom.
+
+    nan where one of them is of a single run.
+    """
+    parts = [sample.sd**2 / sample.runs for sample in samples]
+    if np.isnan(sum(parts)):
+        return float("nan")
+    if sum(parts) == 0.0:
+        return 0.0
+    freedom = sum(parts) ** 2 / sum(
+        part**2 / (sample.runs - 1) for part, sample in zip(parts, samples, strict=True)
+    )
+    return float(stats.t.ppf((1.0 + level) / 2.0, freedom) * np.sqrt(sum(parts)))
 
 
 def compare_spreads(ours: Sample, paper: Sample, level: float = LEVEL) -> Compared:
@@ -125,7 +183,7 @@ def compare_spreads(ours: Sample, paper: Sample, level: float = LEVEL) -> Compar
     high, low = (float(ours.sd / paper.sd / np.sqrt(end)) for end in ends)
     if not low <= 1.0 <= high:
         return Compared(DIFFERS, low, high)
-    near = 1.0 / RATIO_AT_MOST <= low and high <= RATIO_AT_MOST
+    near = low >= 1.0 / RATIO_AT_MOST and high <= RATIO_AT_MOST
     return Compared(AGREES if near else NOT_COMPARABLE, low, high)
 
 
@@ -143,7 +201,7 @@ def shares_differ(ours: tuple[int, int], other: tuple[int, int], level: float = 
     >>> shares_differ((16, 20), (20, 20)), shares_differ((14, 20), (20, 20))
     (False, True)
     """
-    table = [[some, runs - some] for some, runs in (ours, other)]
+    table = np.array([[some, runs - some] for some, runs in (ours, other)])
     return bool(stats.fisher_exact(table).pvalue < 1.0 - level)
 
 

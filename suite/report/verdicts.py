@@ -218,7 +218,9 @@ def _sd(figure: Reported, ours: pd.DataFrame) -> Verdict:
         return Verdict(shown, NOT_COMPARABLE, f"{len(values)} runs are too few for a spread")
     if compared.high == 0.0:
         return Verdict(shown, compared.word, "ours have no spread at all")
-    return Verdict(shown, compared.word, f"{compared.low:.2g} to {compared.high:.2g} times the paper's")
+    return Verdict(
+        shown, compared.word, f"{compared.low:.2g} to {compared.high:.2g} times the paper's"
+    )
 
 
 def _single(figure: Reported, ours: pd.DataFrame) -> Verdict:
