@@ -96,7 +96,7 @@ def _or_empty(frame: pd.DataFrame | None) -> pd.DataFrame:
 def measured_tables(steps: Steps, reference: str | None = None) -> list[Table]:
     """The ranking, fixed targets and budgets, and the statistics of runs as step functions."""
     return [
-        *ranking_tables(steps),
+        *ranking_tables(steps, reference),
         *target_tables(steps),
         *budget_tables(steps),
         *statistics_tables(steps, np.random.default_rng(BOOTSTRAP_SEED), reference),
