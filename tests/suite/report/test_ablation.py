@@ -92,6 +92,20 @@ def test_both_readings_stand_beside_the_papers_figures():
     assert plain["ours cost with penalties mean"] == (300.0 + 1000.0) / 2
 
 
+def test_our_own_planner_is_ablated_beside_and_has_no_figures_of_the_paper():
+    records = [kbga(160.0), kbga(250.0, "crossover", "mutation")]
+    ours = [
+        kbga(156.0, name="kbga-plus", planner="kbga-plus"),
+        kbga(157.0, "crossover", "mutation", name="kbga-plus-without", planner="kbga-plus"),
+    ]
+    frame = paper_ablation(runs_of(*records, *ours)).set_index("planner")
+    assert frame.loc["kbga-8", "paper cost mean"] == 156.31
+    papers = [column for column in frame if column.startswith("paper")]
+    for name in ("kbga-plus", "kbga-plus-without"):
+        assert not any(value and value == value for value in frame.loc[name, papers])
+    assert frame.loc["kbga-plus-without", "ours cost mean"] == 157.0
+
+
 def test_where_the_paper_never_found_a_path_it_is_said_so():
     frame = paper_ablation(
         runs_of(
