@@ -199,7 +199,7 @@ V      future work: probabilities of the operators      KBGASettings.adaptation_
 
 from kbga.algorithm import KBGA
 from kbga.measures import GenerationReport
-from kbga.settings import KBGASettings
+from kbga.settings import KBGAPlusSettings, KBGASettings
 from suite.scene import make_scene
 
-__all__ = ["KBGA", "GenerationReport", "KBGASettings", "make_scene"]
+__all__ = ["KBGA", "GenerationReport", "KBGAPlusSettings", "KBGASettings", "make_scene"]

@@ -5,7 +5,8 @@ from dataclasses import FrozenInstanceError, fields
 import numpy as np
 import pytest
 
-from kbga.settings import FINEST, KBGASettings
+from kbga.encoding import FINEST
+from kbga.settings import KBGAPlusSettings, KBGASettings
 
 WHOLE = {
     "population_size": 2,
