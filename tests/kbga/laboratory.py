@@ -194,7 +194,7 @@ def genes_of(population: Population, i: int) -> list[int]:
 
 
 def laboratory(scene: Scene, seed: int = 0, **settings: float) -> Laboratory:
-    """A first population on a scene, with any of KBGAPlusSettings: they use every operator fully."""
+    """A first population on a scene, with any of KBGAPlusSettings, which use operators fully."""
     chosen = KBGAPlusSettings(**{"resolution": 10, "population_size": 10, **settings})
     rates = rates_of(chosen)
     query = scene.query()

@@ -9,6 +9,7 @@ from kbga.algorithm import KBGA
 from kbga.problem import MOST_NEAR, Problem, is_known_usable, is_usable, make_problem
 from kbga.settings import KBGAPlusSettings
 from suite.geometry.arrangement import arrange
+from suite.geometry.kernels import FIRST_EDGE, LAST_EDGE
 from suite.scene import Scene
 from tests.kbga.laboratory import all_near_nodes, near_nodes, random_scene, scene_of
 from tests.suite.geometry.lattice import counts, pinches, random_solid
@@ -57,6 +58,40 @@ def test_every_corner_on_a_free_lattice_node_has_that_node(seed):
     ):
         if x % 1 == 0 and y % 1 == 0 and (x, y) not in bad:
             assert int((y - ymin) * (side + 1) + x - xmin) in near_nodes(problem, int(group))
+
+
+@settings(max_examples=counts(60, 5))
+@given(st.integers(0, 2**32), st.sampled_from([2, 3, 5, 8, 16]), st.sampled_from([1, 2, 4]))
+def test_with_a_reach_the_nodes_near_an_obstacle_are_all_free_ones_so_near_to_its_boundary(
+    seed, resolution, reach
+):
+    scene = random_scene(np.random.default_rng(seed))
+    problem = make_problem(
+        scene.arrangement, scene.bounds, resolution, room=scene.workspace, reach=reach
+    )
+    lattice = problem.lattice
+    everywhere = places(problem, list(range(lattice.columns * lattice.rows)))
+    usable = [is_usable(n, problem.arrays, lattice) for n in range(len(everywhere))]
+    for group in range(len(problem.arrays.groups)):
+        first, last = problem.arrays.groups[group, [FIRST_EDGE, LAST_EDGE]].astype(int)
+        edges = problem.arrays.boundary[first:last].reshape(-1, 2, 2)
+        away = (
+            shapely.distance(
+                shapely.points(everywhere), shapely.multilinestrings(shapely.linestrings(edges))
+            )
+            if len(edges)
+            else np.full(len(everywhere), np.inf)
+        )
+        found = near_nodes(problem, group)
+        assert len(set(found)) == len(found)
+        slack = 1e-9
+        sure = {
+            n for n in range(len(usable)) if usable[n] and away[n] < reach * lattice.unit - slack
+        }
+        may = {
+            n for n in range(len(usable)) if usable[n] and away[n] < reach * lattice.unit + slack
+        }
+        assert sure <= set(found) <= may
 
 
 def test_without_obstacles_there_is_nothing_to_be_near_to():
