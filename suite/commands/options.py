@@ -24,7 +24,12 @@ class TableFormat(StrEnum):
 
 
 SceneArgument = Annotated[
-    str, typer.Argument(metavar="SCENE", help="Name in the catalogue, or path of a scene file.")
+    str,
+    typer.Argument(
+        metavar="SCENE",
+        help="Name in the catalogue, or path of a scene file; modified, if you like: "
+        "zigzag@turn=17,shift=0.37, my.geojson@twin=3.",
+    ),
 ]
 StoreArgument = Annotated[Path, typer.Argument(metavar="STORE", help="Result store (SQLite).")]
 PlannerOption = Annotated[str, typer.Option(help="Name of the planner; see `list planners`.")]
