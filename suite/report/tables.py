@@ -6,6 +6,7 @@ import pandas as pd
 from suite.report.ablation import ablation_tables
 from suite.report.anytime import Steps, steps_of
 from suite.report.budgets import budget_tables
+from suite.report.contrasts import contrast_table
 from suite.report.newest import newest
 from suite.report.paper_tables import COST_NOTE, paper_tables
 from suite.report.ranking import ranking_tables
@@ -67,7 +68,7 @@ def all_tables(
     if simulations is not None and replans is not None:
         moving = simulated_tables(driven, simulations, replans)
     answers = verdict_table(Rows(kept, driven, _or_empty(first), _or_empty(replans)))
-    told = [] if answers is None else [answers]
+    told = [table for table in (answers, contrast_table(kept)) if table is not None]
     if kept.empty and moving:
         return _paper_last([*moving, *told])
     measured = [] if events is None else measured_tables(steps_of(kept, events), reference)
@@ -95,7 +96,7 @@ def _or_empty(frame: pd.DataFrame | None) -> pd.DataFrame:
 def measured_tables(steps: Steps, reference: str | None = None) -> list[Table]:
     """The ranking, fixed targets and budgets, and the statistics of runs as step functions."""
     return [
-        *ranking_tables(steps),
+        *ranking_tables(steps, reference),
         *target_tables(steps),
         *budget_tables(steps),
         *statistics_tables(steps, np.random.default_rng(BOOTSTRAP_SEED), reference),
