@@ -78,9 +78,16 @@ class Cell:
 
         So it is if the budget is of time, or if the time that planning takes moves the world on.
         """
+        return self.load_counts or self.budget.cpu_s is not None
+
+    @property
+    def load_counts(self) -> bool:
+        """Whether the outcome depends on what else the machine does: a busy one has less to give.
+
+        So it does where wall time ends the run or moves the world on; not where CPU time does.
+        """
         is_charged = self.world is not None and self.world.settings.get("charge") == "measured"
-        of_time = self.budget.wall_s is not None or self.budget.cpu_s is not None
-        return is_charged or of_time
+        return is_charged or self.budget.wall_s is not None
 
     @property
     def budget_as_dict(self) -> dict[str, float | int | None]:

@@ -139,22 +139,17 @@ class Store:
             rows = self._connection.execute("SELECT key FROM runs WHERE contended")
             return {key for (key,) in rows}
 
-    def count_attempt(self, key: str) -> int:
-        """Note that a row was run once more and stays as it was.
+    def attempts(self) -> dict[str, int]:
+        """How often each row was run, by its key."""
+        with _explained(self.path):
+            return dict(self._connection.execute("SELECT key, coalesce(attempts, 1) FROM runs"))
 
-        Returns
-        -------
-        int
-            How often it was run by now.
-        """
+    def count_attempt(self, key: str) -> None:
+        """Note that a row was run once more and stays as it was."""
         with self._writing() as connection:
             connection.execute(
                 "UPDATE runs SET attempts = coalesce(attempts, 1) + 1 WHERE key = ?", (key,)
             )
-            (attempts,) = connection.execute(
-                "SELECT attempts FROM runs WHERE key = ?", (key,)
-            ).fetchone()
-        return int(attempts)
 
     def want(self, matrix: str, cells: Iterable[Cell]) -> None:
         """Write down what a matrix wants, in place of what it wanted before: for those who ask."""
