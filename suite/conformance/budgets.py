@@ -62,8 +62,6 @@ def _timed(subject: Subject, clock: str) -> Outcome:
     ):
         budget = timed_budget(clock, **others)
         trial = subject.trial(scene, budget)
-        if trial.refused:
-            return _late(trial, clock, f"refused: {trial.run.refusal}")
         took = [_took(trial, clock)]
         while took[-1] > WALL_S + LATE_S and len(took) < ATTEMPTS:
             took.append(_took(subject.trial(scene, budget), clock))

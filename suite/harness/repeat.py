@@ -28,7 +28,7 @@ from suite.record import Cell, RunRecord
 from suite.store import Store
 
 ATTEMPTS = 3
-"""Repetitions of a row in one go; a machine that is busy now and then has let it through by then."""
+"""Repetitions of a row in one go: a machine that is busy now and then lets it through by then."""
 
 WAITING = 0.5
 """Share of the patience that may go to waiting; the rest is for runs, for short ones slip through
