@@ -49,10 +49,16 @@ PluginOption = Annotated[
     ),
 ]
 WallOption = Annotated[float | None, typer.Option(help="Budget of a plan: seconds of wall time.")]
+CpuOption = Annotated[
+    float | None,
+    typer.Option(help="Budget of a plan: seconds of CPU time, on any machine load."),
+]
 GenerationsOption = Annotated[
     int | None, typer.Option(help="Budget of a plan: generations or iterations.")
 ]
-ChecksOption = Annotated[int | None, typer.Option(help="Budget of a plan: collision checks.")]
+ChecksOption = Annotated[
+    int | None, typer.Option(help="Budget of a plan: collision checks, as questions asked.")
+]
 TextStyle = Annotated[TextFormat, typer.Option("--format", help="For people or programs.")]
 TableStyle = Annotated[TableFormat, typer.Option("--format", help="How to print them.")]
 

@@ -16,7 +16,7 @@ A TOML file::
     name = "kbga-small"                      # of the variant; default: the planner's own
     planner = "kbga"
     settings = {population_size = 20}        # what is left out keeps its default
-    budget = {generations = 200}             # wall_s, generations, checks; none: its own stop
+    budget = {generations = 200}             # fields of Budget; none: its own stop
 
 Every query of every scene is run with every variant and every seed.
 
@@ -79,7 +79,9 @@ class Limits:
     """When the harness ends a run that does not end by itself.
 
     factor, grace_s : ``plan`` may take ``factor`` times its wall budget, and ``grace_s`` more.
-    wall_s : what ``plan`` may take if it has no wall budget, seconds.
+    cpu_stretch : with a budget of CPU time alone it may take so many times that of wall time, and
+        ``grace_s`` more: on a busy machine a run gets a small share of a core.
+    wall_s : what ``plan`` may take if it has no budget of time, seconds.
     warm_up_s : what loading and ``warm_up`` may take, compilation included, seconds.
     memory_mb : what the run with all its processes may hold at any time, resident, 10^6 bytes. The
         default is what computers have for each core at the least, and several times what a
@@ -88,6 +90,7 @@ class Limits:
 
     factor: float = 1.5
     grace_s: float = 10.0
+    cpu_stretch: float = 20.0
     wall_s: float = 300.0
     warm_up_s: float = 300.0
     memory_mb: float = 2000.0
@@ -105,9 +108,11 @@ class Limits:
 
     def plan_s(self, budget: Budget) -> float:
         """Seconds of wall time after which a run with this budget is killed."""
-        if budget.wall_s is None:
-            return self.wall_s
-        return self.factor * budget.wall_s + self.grace_s
+        if budget.wall_s is not None:
+            return self.factor * budget.wall_s + self.grace_s
+        if budget.cpu_s is not None:
+            return self.cpu_stretch * budget.cpu_s + self.grace_s
+        return self.wall_s
 
     def run_s(self, cell: Cell) -> float:
         """Seconds of wall time after which a run is killed; a simulated one plans many times."""
