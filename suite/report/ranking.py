@@ -15,6 +15,7 @@ import pandas as pd
 from scipy import stats
 
 from suite.report.anytime import Array, Steps, final_gaps, first_within
+from suite.report.clock import by_the_clock
 from suite.report.statistics import (
     LEVEL,
     critical_difference,
@@ -127,8 +128,9 @@ def scene_scores(steps: Steps) -> pd.DataFrame:
     groups = measured.groupby(["place", "variant"], sort=False)
     scores = groups[["success (%)", "within 1 % (%)"]].mean()
     scores["gap median (%)"] = groups["gap median (%)"].median()
-    times = pd.DataFrame({"time": 1e3 * time}, index=runs.index)
-    scores["time to 1 % median (ms)"] = medians(times, runs[["place", "variant"]])["time"]
+    times = pd.DataFrame({"time": 1e3 * time}, index=runs.index)[by_the_clock(runs)]
+    names = runs.loc[times.index, ["place", "variant"]]
+    scores["time to 1 % median (ms)"] = medians(times, names)["time"]
     planners = scores.groupby(level="place").size()
     shared = planners.index[planners == runs["variant"].nunique()]
     scores = scores[scores.index.get_level_values("place").isin(shared)]
@@ -176,6 +178,7 @@ def _ranking(
 def _ranks(scores: pd.DataFrame, keys: "list[pd.Series[Any]]") -> pd.DataFrame:
     """Ranks by the first key, among equals by the second."""
     wanted = pd.concat(keys, axis=1).notna().all(axis=1)
+    wanted = wanted.groupby(scores["scene"]).transform("all")
     # Places among the sorted rows of keys: equal rows, equal places.
     rows = np.column_stack(keys)[wanted]
     order = np.unique(rows, axis=0, return_inverse=True)[1].ravel()
