@@ -52,9 +52,7 @@ def differences(runs: pd.DataFrame) -> pd.DataFrame:
     if runs.empty:
         return pd.DataFrame()
     settings = settings_of(runs)
-    ends = {
-        name: next(iter(settings[runs["variant"] == name]), None) for name in (KBGA, KBGA_PLUS)
-    }
+    ends = {name: next(iter(settings[runs["variant"] == name]), None) for name in (KBGA, KBGA_PLUS)}
     if any(end is None for end in ends.values()):
         return pd.DataFrame()
     rows = []
@@ -79,9 +77,7 @@ def _step(
     return changed[0] if is_step else None
 
 
-def _row(
-    planner: str, step: str, others: Mapping[str, Any], group: pd.DataFrame
-) -> dict[str, Any]:
+def _row(planner: str, step: str, others: Mapping[str, Any], group: pd.DataFrame) -> dict[str, Any]:
     found = feasible(group)
     return {
         "planner": planner,
