@@ -52,20 +52,19 @@ def differences(runs: pd.DataFrame) -> pd.DataFrame:
     if runs.empty:
         return pd.DataFrame()
     settings = settings_of(runs)
-    ends = {
-        name: next(iter(settings[runs["variant"] == name]), None) for name in (KBGA, KBGA_PLUS)
-    }
-    if any(end is None for end in ends.values()):
+    ends: dict[str, Mapping[str, Any]] = {}
+    for name in (KBGA, KBGA_PLUS):
+        ends |= {name: values for values in settings[runs["variant"] == name][:1]}
+    if len(ends) < 2:
         return pd.DataFrame()
     rows = []
     for planner, other in ((KBGA, KBGA_PLUS), (KBGA_PLUS, KBGA)):
         mine = runs[runs["planner"] == planner]
-        steps = settings[mine.index].map(lambda s, p=planner, o=other: _step(s, ends[p], ends[o]))
-        for step, group in mine.groupby(steps, sort=False):
-            rows.append(_row(planner, step, ends[other], group))
+        steps = [_step(values, ends[planner], ends[other]) for values in settings[mine.index]]
+        for step, group in mine.groupby(pd.Series(steps, mine.index), sort=False):
+            rows.append(_row(planner, str(step), ends[other], group))
     frame = pd.DataFrame(rows)
-    steps_there = (frame["setting"] != AS_IT_IS).sum() if not frame.empty else 0
-    return frame if steps_there else pd.DataFrame()
+    return frame if (frame["setting"] != AS_IT_IS).any() else pd.DataFrame()
 
 
 def _step(
@@ -79,9 +78,7 @@ def _step(
     return changed[0] if is_step else None
 
 
-def _row(
-    planner: str, step: str, others: Mapping[str, Any], group: pd.DataFrame
-) -> dict[str, Any]:
+def _row(planner: str, step: str, others: Mapping[str, Any], group: pd.DataFrame) -> dict[str, Any]:
     found = feasible(group)
     return {
         "planner": planner,

@@ -18,6 +18,7 @@ def run(planner: str, variant: str, settings: dict, *, gap: float | None, checks
         "settings": json.dumps(settings),
         "status": "solved" if gap is not None else "exhausted",
         "gap": gap,
+        "cost": None if gap is None else 100.0 * (1.0 + gap),
         "checks": checks,
         "cpu_s": 0.001,
     }
