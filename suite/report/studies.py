@@ -48,7 +48,8 @@ class Study:
     setting : what varies.
     symbol : its name in columns and on axes.
     planners : those whose variants are compared; with the paper's KBGA, ours as well.
-    reference : the value that the others are compared with: the planners' default.
+    reference : the value that the others are compared with: the default of the planners, or of
+        most of them.
     panels : columns of :func:`sweep` that the figure shows for each scene.
     logarithmic : whether the values stand on a logarithmic axis.
     """
