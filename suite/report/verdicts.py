@@ -48,9 +48,12 @@ NOTE = (
     "on the scene, of ours over the exact optimum, and so are its spread and the range of our "
     "runs. agrees: the 95 % interval of the difference (Welch) holds 0 and is narrower than the "
     "paper's own figure, so that a planner without any excess can't agree; spreads (F) within a "
-    "factor of 3; a single run of the paper within the range of ours. differs: the interval does "
-    "not hold 0. better, worse: differs, where the scene is not drawn to the cost. not comparable: "
-    "neither is shown, or the reason beside it. What the paper states twice stands here twice."
+    "factor of 3; a single run of the paper within the range of ours, if that ends below twice "
+    "the figure. differs: the interval does not hold 0, or too many of our runs found no path. "
+    "Where some did not, a verdict on a mean stands only if it is the same over those that did and "
+    "over all, penalties included. better, worse: differs, where the scene is not drawn to the "
+    "cost. not comparable: neither is shown, or the reason beside it. What the paper states twice "
+    "stands here twice."
 )
 PLUS_NOTE = f"{KBGA_PLUS}: ours, beside, without a verdict; "
 
@@ -236,12 +239,19 @@ def _single(figure: Reported, ours: pd.DataFrame) -> Verdict:
     papers = float(_beyond(figure, figure.value, _paper_scale(figure)))
     low, high = float(mine.min()), float(mine.max())
     why = f"our median; {_range(figure, papers, low, high, len(values))}"
-    if len(values) < len(ours):
+    lost = len(ours) - len(feasible(ours))
+    if lost:
         why += f"; {_without_path(ours)}"
+    if lost > len(ours) / 2:
+        # The paper's run found one.
+        return Verdict(shown, DIFFERS, why)
     cut = _cut_off(figure, ours)
     if cut and not low > papers:
         return Verdict(shown, NOT_COMPARABLE, f"{why}; {cut}")
     if _is_within(papers, low, high):
+        if high > 2.0 * papers:
+            # Almost any figure would lie in it.
+            return Verdict(shown, NOT_COMPARABLE, f"too wide to tell: {why}")
         return Verdict(shown, AGREES, why)
     return Verdict(shown, _by_sign(figure, is_less=high < papers), why)
 

@@ -142,10 +142,11 @@ def test_runs_that_a_limit_cut_off_are_lower_bounds(rows_of):
     assert given(52, spread).word == NOT_COMPARABLE
 
 
-def some_without_path(found, of, *, variant="kbga", claimed=1000.0):
+def some_without_path(found, of, *, variant="kbga", claimed=1000.0, generation=50):
     lost = {"status": PlanStatus.EXHAUSTED, "claimed_cost": claimed, "path": None}
+    good = {"claimed_cost": 157.0, "generation_of_best": generation}
     return [
-        *zigzag(excess(1.0, 0.5)[:found], variant=variant, claimed_cost=157.0),
+        *zigzag(excess(1.0, 0.5)[:found], variant=variant, **good),
         *(zigzag([None], variant=variant, seed=i, **lost)[0] for i in range(found, of)),
     ]
 
@@ -200,6 +201,26 @@ def test_a_single_run_of_the_paper_agrees_if_its_excess_could_be_one_of_ours(row
         verdict(wanted, rows_of(*zigzag(excess(c, 0.5), **scene))).word for c in (0.5, 2.0, 9.0)
     ]
     assert words == [DIFFERS, AGREES, DIFFERS]
+
+
+def test_a_range_that_holds_almost_anything_is_no_agreement(rows_of):
+    wanted = figure("section III-B, Fig. 9", "double_u", quantity="generations", statistic="single")
+
+    def word(*generations):
+        records = [
+            zigzag([156.0], scene="double_u", seed=i, generation_of_best=count)[0]
+            for i, count in enumerate(generations)
+        ]
+        return verdict(wanted, rows_of(*records)).word
+
+    assert (word(30, 49, 80), word(5, 7, 242), word(50, 60)) == (AGREES, NOT_COMPARABLE, DIFFERS)
+
+
+def test_a_typical_run_without_a_path_differs_from_one_with(rows_of):
+    wanted = figure("section III-B, Fig. 8", quantity="generations", statistic="single")
+    most, few = (rows_of(*some_without_path(found, 20, generation=60)) for found in (9, 18))
+    assert verdict(wanted, most).word == DIFFERS
+    assert verdict(wanted, few).word == AGREES
 
 
 def test_ours_that_find_no_path_differ(rows_of):

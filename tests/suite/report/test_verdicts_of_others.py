@@ -72,7 +72,10 @@ def test_rrt_star_is_not_taken_for_kbga(words):
     costs = told(found, "cost", "mean", "sd", "single")
     assert costs.count(AGREES) <= len(costs) / 3
     assert DIFFERS in told(found, "cost", "mean")
-    assert set(told(found, "generations", "mean", "single")) == {DIFFERS}
+    generations = told(found, "generations", "mean", "single")
+    # Where its few checks left some runs without a path, the others' mean is not compared.
+    assert set(generations) <= {DIFFERS, NOT_COMPARABLE}
+    assert generations.count(DIFFERS) > len(generations) / 2
 
 
 def test_the_first_path_of_a_random_tree_is_not_taken_for_kbga(words):
