@@ -97,9 +97,7 @@ def modified(scene: Scene, modifiers: Modifiers, *, inflate: float = 0.0) -> Sce
         )
     xmin, ymin, xmax, ymax = scene.bounds
     move = make_similarity(modifiers, np.array([(xmin + xmax) / 2.0, (ymin + ymax) / 2.0]))
-    room, *polygons = (
-        shapely.transform(polygon, move.points) for polygon in _with_contacts(scene)
-    )
+    room, *polygons = (shapely.transform(polygon, move.points) for polygon in _with_contacts(scene))
     return make_scene(
         name,
         room,
