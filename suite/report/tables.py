@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 
 from suite.report.ablation import ablation_tables
+from suite.report.alignment import alignment_tables, without_repeats
 from suite.report.anytime import Steps, steps_of
 from suite.report.budgets import budget_tables
 from suite.report.newest import newest
@@ -63,6 +64,7 @@ def all_tables(
     left_out = len(runs) - len(kept)
     driven = kept[is_simulated(kept)]
     kept = kept[~is_simulated(kept)]
+    aligned, kept = alignment_tables(kept), without_repeats(kept)
     moving = []
     if simulations is not None and replans is not None:
         moving = simulated_tables(driven, simulations, replans)
@@ -74,6 +76,7 @@ def all_tables(
     return _paper_last(
         [
             *summary_tables(kept, left_out),
+            *aligned,
             *moving,
             *study_tables(kept, first),
             *ablation_tables(kept, COST_NOTE),
