@@ -317,3 +317,4 @@ def test_a_missing_file_is_named_in_the_error():
 def test_the_robots_radius_lengthens_the_way():
     point, disc = load_scene("double_u"), load_scene("double_u", inflate=1.0)
     assert shortest_path(disc, disc.query()).length > shortest_path(point, point.query()).length
+    assert disc.stored_optimum(disc.query()) is None
