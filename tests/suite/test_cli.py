@@ -17,7 +17,7 @@ from suite.harness.run import FAILURES
 from suite.planner import PlanStatus
 from suite.scene import Obstacle, make_scene
 from suite.scene_file import read_scene, write_scene
-from suite.scenes.catalogue import load_scene
+from suite.scenes.catalogue import aligned_names, load_scene
 from suite.store import read_runs
 from tests.suite.commands import Done, in_own_process
 
@@ -68,8 +68,9 @@ def test_lists_are_json_for_programs(kbga_bench):
     scattered = next(scene for scene in scenes if scene["name"] == "scattered_300")
     assert (scattered["generated"], scattered["parts"], scattered["path"]) == (True, 300, None)
     assert set(scattered) == set(zigzag)
-    dynamic = [scene["name"] for scene in scenes if scene["dynamic"]]
+    dynamic = [scene["name"] for scene in scenes if scene["dynamic"] and not scene["control"]]
     assert dynamic == ["door", "unknown_obstacles", "moving-0"]
+    assert [scene["name"] for scene in scenes if scene["control"]] == aligned_names()
     matrices = json.loads(kbga_bench("list", "matrices", "--format", "json").out)
     paper = next(matrix for matrix in matrices if matrix["name"] == "paper-static")
     assert paper["runs"] == 8 * 6 * 20
@@ -102,7 +103,8 @@ def test_a_simulation_says_how_the_robot_fared_as_json_and_in_words(kbga_bench):
     assert (done["reached"], done["hits"], done["opening"]) == (True, [], "right")
     assert done["world"]["speed"] == 5.0
     first, *_, last = done["trajectory"]
-    assert (first, last) == ([0.0, 70.0, 6.0], [done["time"], 88.0, 94.0])
+    ends = load_scene("door").query()
+    assert (first, last) == ([0.0, *ends.start], [done["time"], *ends.goal])
     assert {"time", "latency_s", "cost", "status"} <= set(done["replans"][0])
     assert done["waiting_time"] == 0.0
     said = kbga_bench(*arguments).out
