@@ -87,4 +87,4 @@ def _is_charged(runs: pd.DataFrame) -> NDArray[np.bool_]:
     charged = {
         text: json.loads(text).get("charge") == "measured" for text in texts.dropna().unique()
     }
-    return texts.map(charged).fillna(value=False).to_numpy(dtype=np.bool_)
+    return np.array([charged.get(text, False) for text in texts], dtype=np.bool_)
