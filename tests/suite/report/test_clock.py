@@ -1,5 +1,6 @@
 """What a busy machine has spoilt is in no comparison by the clock, and everybody says how much."""
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -25,6 +26,12 @@ TIMED = Budget(wall_s=1.0)
 
 def table(tables, name):
     return next(table for table in tables if table.name == name)
+
+
+@pytest.fixture(autouse=True)
+def _closed():
+    yield
+    plt.close("all")
 
 
 @pytest.fixture
@@ -120,7 +127,8 @@ def test_pictures_by_the_clock_leave_them_out_and_others_do_not(busy):
     assert [len(rows) for rows in counted_groups(known, "wall_s").values()] == [2]
     assert [len(rows) for rows in counted_groups(known, "checks").values()] == [5]
     assert np.isfinite(final_gaps(known)).all()
-    runtime_figures(known), comparison_figures(known)
+    drawn = runtime_figures(known) | comparison_figures(known)
+    assert {"ecdf", "gap-time", "gap-boxes"} <= set(drawn)
 
 
 def test_pictures_of_contended_runs_alone_are_those_without_time():
