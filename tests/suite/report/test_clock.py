@@ -142,6 +142,7 @@ def test_every_table_says_how_many_rows_it_does_not_count(busy):
     tables = all_tables(*_frames(*busy, *ended))
     for one in tables:
         assert "Left out: 2 rows of runs that the clock ended" in one.note, one.name
+        assert "no core for themselves (rrt 2)." in one.note, one.name
     frame = table(tables, "summary").frame.set_index("planner")
     assert frame.loc["rrt", "runs"] == 1
     assert frame.loc["kbga", ["runs", "solved"]].tolist() == [5, 5]
