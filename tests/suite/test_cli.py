@@ -274,7 +274,7 @@ def test_plan_says_all_in_json(kbga_bench, hostile, wall_file):
     assert found["status"] == "solved"
     assert found["settings"] == {"reach": 0.5}
     assert found["budget"] == {"wall_s": None, "generations": 5, "checks": None}
-    assert found["collision_checks"] == 9
+    assert (found["collision_checks"], found["computed_checks"]) == (9, None)
     assert (found["generations"], found["generation_of_best"]) == (5, 3)
     assert [cost for _, cost in found["events"]] == [100.0, 50.0]
     assert found["time_to_best_s"] <= found["wall_s"]
@@ -555,3 +555,33 @@ def test_a_row_that_is_not_there_cannot_be_repeated(error_of, filled):
     assert "no row has a key that begins with 'ffffffff00'" in error_of(
         "rerun", filled, "ffffffff00"
     )
+
+
+# A machine that is busy
+
+
+def test_a_plan_may_have_a_budget_of_cpu_time(kbga_bench, hostile, wall_file, tmp_path):
+    drowsy = ("--planner", "drowsy", "--set", f"folder={tmp_path}", "--cpu-s", 2)
+    found = json.loads(kbga_bench("plan", wall_file, *drowsy, "--format", "json").out)
+    assert found["budget"] == {"wall_s": None, "generations": None, "checks": None, "cpu_s": 2.0}
+    assert (found["collision_checks"], found["computed_checks"]) == (7, 3)
+    assert found["contended"]
+    assert (
+        "7, 3 of them computed, the rest from memory" in kbga_bench("plan", wall_file, *drowsy).out
+    )
+
+
+def test_who_keeps_no_cpu_time_says_so(kbga_bench, hostile, wall_file):
+    done = kbga_bench("plan", wall_file, "--planner", "wanderer", "--cpu-s", 2, code=1)
+    assert "wanderer keeps no budget of cpu_s. Give one that it keeps: generations" in done.out
+
+
+def test_run_tries_contended_rows_again_while_it_has_patience(kbga_bench, matrix_file, tmp_path):
+    run = ("run", matrix_file("drowsy"), "--store", tmp_path / "s.db")
+    folder = matrix_file("drowsy")
+    folder.write_text(f'{folder.read_text()}settings = {{folder = "{tmp_path}"}}\n')
+    assert "2 rows had no core to run on" in kbga_bench(*run).out
+    assert "2 rows had no core for themselves" in kbga_bench("status", tmp_path / "s.db").out
+    said = kbga_bench(*run, "--patience", 20).out
+    assert "2 were there, 0 ran now" in said
+    assert "2 rows had no core and ran again; none still are contended." in said

@@ -268,3 +268,15 @@ def test_a_world_that_cannot_be_is_refused(written, old, new, message):
 def test_only_simulated_runs_can_be_cold(written):
     said = refused(written(GOOD + "cold = true\n"))
     assert "unknown key 'cold'" in said
+
+
+def test_a_budget_may_be_of_cpu_time(written):
+    matrix = load_matrix(written(GOOD.replace("wall_s = 1 }", "cpu_s = 2 }")))
+    assert matrix.variants[1].budget == Budget(generations=10, cpu_s=2)
+
+
+def test_a_run_of_so_much_cpu_time_has_much_more_wall_time_before_it_is_killed():
+    limits = Limits(grace_s=10.0)
+    assert limits.plan_s(Budget(cpu_s=2.0)) == limits.cpu_stretch * 2.0 + 10.0
+    assert limits.plan_s(Budget(cpu_s=2.0)) > 4 * limits.plan_s(Budget(wall_s=2.0)) - 10.0
+    assert limits.plan_s(Budget(wall_s=1.0, cpu_s=9.0)) == limits.plan_s(Budget(wall_s=1.0))
