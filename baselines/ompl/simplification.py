@@ -38,6 +38,8 @@ def simplify(problem: Problem) -> None:
 
     The path is free after each check.
     """
+    if problem.is_over():
+        return
     solution = problem.definition.getSolutionPath()
     condition = problem.until_over()
     try:

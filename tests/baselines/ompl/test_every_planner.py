@@ -169,10 +169,8 @@ def test_without_a_budget_the_default_of_the_settings_ends_the_run(planner):
 def test_generations_alone_are_refused_with_a_reason(planner):
     scene = SCENES["one box"]
     reason = refusal(planner, scene, scene.query(), Budget(generations=10))
-    assert (
-        reason
-        == f"{planner.name} keeps no budget of generations. Give one that it keeps: checks, wall_s."
-    )
+    kept = "Give one that it keeps: checks, cpu_s, wall_s."
+    assert reason == f"{planner.name} keeps no budget of generations. {kept}"
     for budget in (Budget(), Budget(checks=1), Budget(generations=10, wall_s=1.0)):
         assert refusal(planner, scene, scene.query(), budget) is None
 
