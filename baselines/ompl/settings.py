@@ -29,7 +29,7 @@ def bound(setter: str, rule: Rule | None = None, *, is_length: bool = False) -> 
     return field(default=None, metadata={"setter": setter, "rule": rule, "is_length": is_length})
 
 
-def ours(default: float, rule: Rule | None = None) -> Any:
+def ours(default: float | None, rule: Rule | None = None) -> Any:
     """Declare a setting of the adapter, which OMPL does not know."""
     return field(default=default, metadata={"rule": rule})
 

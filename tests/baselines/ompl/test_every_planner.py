@@ -19,6 +19,7 @@ from baselines.ompl.oneshot import (
     SimplifiedPlanner,
 )
 from baselines.ompl.roadmap import PRMPlanner, PRMstarPlanner
+from baselines.ompl.shortcut import ShortcutPlanner
 from baselines.ompl.watched import (
     AORRTCPlanner,
     BITstarPlanner,
@@ -45,6 +46,7 @@ PLANNERS = (
     RRTConnectPlanner,
     FMTPlanner,
     BFMTPlanner,
+    ShortcutPlanner,
 )
 
 WITH_ITERATIONS = (RRTstarPlanner, InformedRRTstarPlanner, SORRTstarPlanner, BITstarPlanner)
@@ -157,6 +159,32 @@ def test_the_clock_of_the_run_is_the_recorders(planner):
 def test_the_first_limit_that_is_reached_ends_the_run(planner):
     assert run(planner, SCENES["one box"], Budget(wall_s=60.0, checks=500)).checks <= 500
     assert run(planner, SCENES["one box"], Budget(wall_s=0.05, checks=10**9)).checks < 10**9
+
+
+@each
+def test_a_budget_of_cpu_time_is_kept(planner):
+    # A busy machine takes wall time from a run, but gives it no CPU time.
+    recorder = Recorder()
+    run(planner, load_scene("maze"), Budget(cpu_s=0.1), recorder=recorder)
+    assert recorder.cpu_s() < 1.0
+
+
+@each
+def test_a_spent_cpu_clock_ends_the_run_at_once(planner):
+    class Late(Recorder):
+        def cpu_s(self) -> float:
+            return 1.0
+
+    made = run(planner, load_scene("maze"), Budget(cpu_s=0.9), recorder=Late())
+    assert made.checks < 2000
+
+
+@each
+def test_a_search_that_goes_on_asks_exactly_as_often_as_its_budget_allows(planner):
+    scene = scene_of([RING], (1, 5), (6, 6))
+    made = run(planner, scene, Budget(checks=3000))
+    assert made.checks == 3000
+    assert made.computed_checks is None  # no answer comes from memory
 
 
 @each
