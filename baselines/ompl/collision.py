@@ -40,7 +40,8 @@ class ExactCollision(ob.MotionValidator):  # type: ignore[misc]
     state_checks : those of states.
     free_motions : list that takes the two ends of each free motion; None to keep none.
     visits : OMPL's other calls into Python, such as for a sample of free space.
-    look : called in each pause, which is every 31 checks.
+    checks_between_pauses : 31 by default.
+    look : called in each pause.
     end : called when OMPL asks after the end.
     """
 
@@ -55,6 +56,7 @@ class ExactCollision(ob.MotionValidator):  # type: ignore[misc]
         self.state_checks = 0
         self.visits = 0
         self.free_motions: list[tuple[Point, Point]] | None = None
+        self.checks_between_pauses = CHECKS_BETWEEN_PAUSES
         self.look: Callable[[], None] = do_nothing
         self.end: Callable[[], None] = do_nothing
         self._call_at = float("inf")
@@ -140,7 +142,7 @@ class ExactCollision(ob.MotionValidator):  # type: ignore[misc]
 
     def _pause(self) -> None:
         began = perf_counter_ns()
-        self._next_pause = self.checks + CHECKS_BETWEEN_PAUSES
+        self._next_pause = self.checks + self.checks_between_pauses
         self._pauses += 1
         self.look()
         if self._pauses % PAUSES_BETWEEN_CLOCKS == 0 and self._time_is_over():

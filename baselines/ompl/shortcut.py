@@ -1,7 +1,7 @@
 """RRT-Connect, OMPL's shortcuts, and again from the start until the budget ends.
 
-What one would build first from OMPL's parts for short paths (Geraerts and Overmars 2007); OMPL's own
-AnytimePathShortening is not in the wheel.
+What one would build first from OMPL's parts for short paths (Geraerts and Overmars 2007); OMPL's
+own AnytimePathShortening is not in the wheel.
 """
 
 from collections.abc import Callable
