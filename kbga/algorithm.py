@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from kbga.counter import ASKED, COMPUTED, is_spent, make_counter
 from kbga.draws import LEAST_BLOCK, left_of, make_draws, refill
 from kbga.dynamic import disturb, genes_of, most_draws_of_disturbance, put_path, restart
 from kbga.encoding import Population, copy_chromosome, empty_population, path_of
@@ -18,8 +19,8 @@ from kbga.evolution import (
 )
 from kbga.measures import GenerationReport, measure
 from kbga.memory import empty_memory, with_room
-from kbga.operators.detour import make_scratch
-from kbga.problem import make_problem
+from kbga.operators.repair import scratch_for
+from kbga.problem import Problem, make_problem
 from kbga.selection import keep_elite
 from kbga.settings import KBGASettings
 from kbga.trace import trace_of
@@ -43,6 +44,8 @@ class KBGA:
         By default those of the paper, and ours where it is silent.
     rng : numpy.random.Generator or seed, optional
         The only source of randomness; by default a fresh one, and each run another.
+    checks : int, optional
+        Questions whether a segment is free that may be asked; the run ends with the last.
 
     Raises
     ------
@@ -78,6 +81,7 @@ class KBGA:
         query: Query | str | None = None,
         settings: KBGASettings | None = None,
         rng: np.random.Generator | int | None = None,
+        checks: int | None = None,
     ) -> None:
         query = _query_of(scene, query)
         settings = KBGASettings() if settings is None else settings
@@ -87,12 +91,12 @@ class KBGA:
         self.settings = settings
         self._rng = rng
         self._scene = scene
-        self._problem = make_problem(scene.arrangement, scene.bounds, settings.resolution)
+        self._problem = self._problem_of(scene)
         self._rates = rates_of(settings)
         self.population = empty_population(settings.population_size, settings.max_nodes)
         self._children = empty_population(settings.population_size, settings.max_nodes)
-        self._scratch = make_scratch(max(8, int(settings.repair_candidates)))
-        self._counter = np.zeros(1, np.int64)
+        self._scratch = scratch_for(self._problem, settings)
+        self._counter = make_counter(checks)
         self._tally = empty_tally()
         informed = round(settings.informed_share * settings.population_size)
         self._draws = make_draws(rng, self._block_size(informed))
@@ -129,8 +133,18 @@ class KBGA:
 
     @property
     def checks(self) -> int:
-        """Collision checks of a segment against the scene, since its last change."""
-        return int(self._counter[0])
+        """Questions asked whether a segment is free, since the last change of the scene."""
+        return int(self._counter[ASKED])
+
+    @property
+    def computed_checks(self) -> int:
+        """Those of them that were computed: the others had been asked before."""
+        return int(self._counter[COMPUTED])
+
+    @property
+    def is_spent(self) -> bool:
+        """Whether no question may be asked any more."""
+        return bool(is_spent(self._counter))
 
     @property
     def stagnant(self) -> bool:
@@ -171,9 +185,12 @@ class KBGA:
                 improved = True
                 if on_improvement is not None:
                     on_improvement(self)
+            if self.is_spent:  # the generation stays half done: the parents are the population
+                return improved
         keep_elite(self.population, self._children)
         self.population, self._children = self._children, self.population
-        self._problem = self._problem._replace(memory=with_room(self._problem.memory, self.checks))
+        memory = with_room(self._problem.memory, self.computed_checks)
+        self._problem = self._problem._replace(memory=memory)
         self._take_lowest()
         if self.settings.adaptation_rate > 0.0:
             self._rates = tuned(self._rates, self._tally, float(self.settings.adaptation_rate))
@@ -196,7 +213,7 @@ class KBGA:
             self.lowest_cost = lowest
             self.generation_of_lowest = self.generation
 
-    def go_on(self, scene: Scene, start: NDArray[np.float64]) -> None:
+    def go_on(self, scene: Scene, start: NDArray[np.float64], checks: int | None = None) -> None:
         """Keep the population, in an environment that may have changed, for another start.
 
         All is evaluated anew, and mutated at a high rate if the scene is another object than
@@ -209,6 +226,8 @@ class KBGA:
             With the workspace of the one before; the same object if nothing has changed.
         start : (2,) float64, metres
             Where the robot is.
+        checks : int, optional
+            Questions that may be asked from here on.
 
         Raises
         ------
@@ -221,10 +240,11 @@ class KBGA:
         self._scene = scene
         self._keep_best_path()
         if changed:
-            self._problem = make_problem(scene.arrangement, scene.bounds, self.settings.resolution)
+            self._problem = self._problem_of(scene)
+            self._scratch = scratch_for(self._problem, self.settings)
         else:  # segments that begin at the start are others now
             self._problem = self._problem._replace(memory=empty_memory())
-        self._counter[0] = 0
+        self._counter[:] = make_counter(checks)
         self.generation = self.generation_of_best = self.generation_of_lowest = 0
         self.best_path, self.best_cost, self.lowest_cost = None, float("inf"), float("inf")
         self._reports.clear()
@@ -264,6 +284,15 @@ class KBGA:
             self._rates,
             self._draws,
             self._counter,
+        )
+
+    def _problem_of(self, scene: Scene) -> Problem:
+        return make_problem(
+            scene.arrangement,
+            scene.bounds,
+            self.settings.resolution,
+            room=scene.workspace,
+            reach=int(self.settings.repair_reach),
         )
 
     @property
@@ -343,7 +372,8 @@ class KBGA:
                 self._reports[self.generation] = self.report()
             answer = None if on_generation is None else on_generation(self, improved)
             ended = answer is not None and not answer
-            if ended or self.generation >= self.settings.max_generations or self.stagnant:
+            ended |= self.is_spent or self.stagnant
+            if ended or self.generation >= self.settings.max_generations:
                 return self.best_path
             improved = self.step(on_improvement)
 

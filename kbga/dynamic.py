@@ -13,7 +13,7 @@ from kbga.encoding import (
     Lattice,
     Population,
     close_columns,
-    distance,
+    distance_to_segment,
     forget,
     set_node,
 )
@@ -58,19 +58,10 @@ def _nearest_segment(nodes: np.ndarray, i: int, size: int, x: float, y: float) -
     for k in range(size + 1):
         ax, ay = nodes[i, k].x, nodes[i, k].y
         bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
-        away = _distance_to_segment(x, y, ax, ay, bx, by)
+        away = distance_to_segment(x, y, ax, ay, bx, by)
         if away <= least:
             nearest, least = k, away
     return nearest
-
-
-@kernel
-def _distance_to_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
-    dx, dy = bx - ax, by - ay
-    square = dx * dx + dy * dy
-    share = 0.0 if square == 0.0 else ((x - ax) * dx + (y - ay) * dy) / square
-    share = min(max(share, 0.0), 1.0)
-    return distance(x, y, ax + share * dx, ay + share * dy)
 
 
 @kernel
@@ -98,9 +89,9 @@ def put_path(
 
 def genes_of(path: np.ndarray, lattice: Lattice) -> np.ndarray:
     """Lattice numbers (k,), int64, of the intermediate nodes of a path (k + 2, 2) over it."""
-    columns = np.rint((path[1:-1, 0] - lattice.x0) / lattice.dx)
-    rows = np.rint((path[1:-1, 1] - lattice.y0) / lattice.dy)
-    return (rows * lattice.side + columns).astype(np.int64)
+    columns = np.rint((path[1:-1, 0] - lattice.x0) / lattice.unit)
+    rows = np.rint((path[1:-1, 1] - lattice.y0) / lattice.unit)
+    return (rows * lattice.columns + columns).astype(np.int64)
 
 
 def most_draws_of_disturbance(population_size: int) -> int:

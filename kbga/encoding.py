@@ -17,28 +17,51 @@ from suite.geometry.tolerances import GRID_DECIMALS
 
 _CELLS = float(10**GRID_DECIMALS)
 
+FINEST = 20_000
+"""Finest resolution. Lattice numbers are 32 bits wide, and a byte is kept for each: 400 MB."""
+
+ROUNDING = 1e-9
+"""Share of a unit by which a side may miss a whole number of them."""
+
 
 class Lattice(NamedTuple):
     """A grid over the workspace whose crossings are numbered row by row from its lower left.
 
     x0, y0 : float, the crossing number 0, metres.
-    dx, dy : float, spacing of the lines, metres.
-    side : int, crossings in a row and in a column.
+    unit : float, spacing of the lines, metres.
+    columns, rows : int, crossings in a row, and in a column.
     """
 
     x0: float
     y0: float
-    dx: float
-    dy: float
-    side: int
+    unit: float
+    columns: int
+    rows: int
 
 
-def make_lattice(bounds: tuple[float, float, float, float], resolution: int) -> Lattice:
-    """Lattice of ``resolution`` units per side over bounds xmin, ymin, xmax, ymax (metres)."""
+def make_lattice(
+    bounds: tuple[float, float, float, float], resolution: int, area: float | None = None
+) -> Lattice:
+    """Lay a lattice over a workspace.
+
+    A unit is a square of 1 / resolution ** 2 of the area of the workspace. In a square room, as
+    the paper's are, ``resolution`` units make a side. In any other (ours), a room that is turned
+    keeps its unit, and only where the lines lie is another matter.
+
+    Parameters
+    ----------
+    bounds : xmin, ymin, xmax, ymax of the workspace, metres.
+    resolution : units per side of a square of that area.
+    area : float, of the workspace, square metres; default: it fills its bounds.
+    """
     xmin, ymin, xmax, ymax = bounds
-    return Lattice(
-        xmin, ymin, (xmax - xmin) / resolution, (ymax - ymin) / resolution, resolution + 1
-    )
+    width, height = xmax - xmin, ymax - ymin
+    unit = math.sqrt(width * height if area is None else area) / resolution
+    # A thin room that lies across its box would have more crossings than numbers.
+    unit = max(unit, math.sqrt(width * height) / FINEST)
+    # What rounding leaves off the last line is no reason to leave off the line.
+    columns, rows = (int(side / unit + ROUNDING) + 1 for side in (width, height))
+    return Lattice(xmin, ymin, unit, columns, rows)
 
 
 @kernel
@@ -53,13 +76,13 @@ def _on_grid(x: float) -> float:
 @kernel
 def node_x(lattice: Lattice, node: int) -> float:
     """Coordinate x of a lattice number, metres."""
-    return _on_grid(lattice.x0 + lattice.dx * (node % lattice.side))
+    return _on_grid(lattice.x0 + lattice.unit * (node % lattice.columns))
 
 
 @kernel
 def node_y(lattice: Lattice, node: int) -> float:
     """Coordinate y of a lattice number, metres."""
-    return _on_grid(lattice.y0 + lattice.dy * (node // lattice.side))
+    return _on_grid(lattice.y0 + lattice.unit * (node // lattice.columns))
 
 
 @kernel
@@ -67,6 +90,16 @@ def distance(ax: float, ay: float, bx: float, by: float) -> float:
     """Distance of two points, metres. Not ``hypot``: its guard against overflow costs 10 ns."""
     dx, dy = bx - ax, by - ay
     return math.sqrt(dx * dx + dy * dy)
+
+
+@kernel
+def distance_to_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
+    """Distance of a point from segment a-b, metres."""
+    dx, dy = bx - ax, by - ay
+    square = dx * dx + dy * dy
+    share = 0.0 if square == 0.0 else ((x - ax) * dx + (y - ay) * dy) / square
+    share = min(max(share, 0.0), 1.0)
+    return distance(x, y, ax + share * dx, ay + share * dy)
 
 
 MAX_HITS = 6

@@ -7,6 +7,7 @@ what was found stays with the chromosome.
 
 import numpy as np
 
+from kbga.counter import COMPUTED, OUT_OF_QUESTIONS, may_ask
 from kbga.encoding import MAX_HITS, Population, distance
 from kbga.memory import COUNT, FIRST_HIT, ROW, UNMEASURED, Memory, key_of, slot_of
 from suite.compiled import inlined_kernel, kernel
@@ -180,12 +181,14 @@ def is_free_segment(
 
     For those operators that want nothing but feasible segments: it ends at the first obstacle.
     """
+    if not may_ask(counter):
+        return False
     key = key_of(nodes[i, k].gene, nodes[i, k + 1].gene)
     slot = slot_of(memory.segments, key)
     ax, ay = nodes[i, k].x, nodes[i, k].y
     bx, by = nodes[i, k + 1].x, nodes[i, k + 1].y
     if memory.segments[slot].key != key:
-        counter[0] += 1
+        counter[COMPUTED] += 1
         row = next_entry(ax, ay, bx, by, arrays.tree, arrays.vertices, 0)
         memory.segments[slot].key = key
         memory.hits[slot, COUNT] = 0
@@ -210,8 +213,16 @@ def evaluate_segment(
     memory: Memory,
     counter: np.ndarray,
 ) -> None:
-    """Length, depth and hit obstacles of segment k of chromosome i, written into its node."""
-    evaluate_within(nodes, i, k, arrays, memory, 0.0, 0.0, np.inf, counter)
+    """Length, depth and hit obstacles of segment k of chromosome i, written into its node.
+
+    Where no question is left, it is as deep as no other is, and hits nothing that is known.
+    """
+    if not evaluate_within(nodes, i, k, arrays, memory, 0.0, 0.0, np.inf, counter):
+        nodes[i, k].length = distance(
+            nodes[i, k].x, nodes[i, k].y, nodes[i, k + 1].x, nodes[i, k + 1].y
+        )
+        nodes[i, k].depth = OUT_OF_QUESTIONS
+        nodes[i, k].hit_count = 0
 
 
 @kernel
@@ -231,12 +242,15 @@ def evaluate_within(
     cost : what all else costs, the length of the segment included.
 
     If so, all of the segment is written into its node. If not, measuring ends with the obstacle
-    that is too much; should more be asked another time, it goes on from there.
+    that is too much; should more be asked another time, it goes on from there. Where no question
+    is left, the answer is no.
     """
+    if not may_ask(counter):
+        return False
     key = key_of(nodes[i, k].gene, nodes[i, k + 1].gene)
     slot = slot_of(memory.segments, key)
     if memory.segments[slot].key != key:
-        counter[0] += 1
+        counter[COMPUTED] += 1
         memory.segments[slot].key = key
         memory.segments[slot].depth = UNMEASURED
         memory.hits[slot, COUNT] = 0

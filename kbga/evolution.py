@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from kbga.counter import is_spent
 from kbga.draws import Draws, draw, left_of
 from kbga.encoding import (
     GOAL,
@@ -20,7 +21,7 @@ from kbga.operators.detour import Scratch
 from kbga.operators.improvement import improve
 from kbga.operators.mutation import mutate
 from kbga.operators.repair import repair
-from kbga.problem import Problem, near_count, near_node
+from kbga.problem import Problem, near_count, near_node, node_at, node_count
 from kbga.selection import tournament
 from kbga.tuning import CROSSOVER, DELETION, IMPROVEMENT, MUTATION, REPAIR, Rates, note
 from suite.compiled import kernel
@@ -46,7 +47,7 @@ def first_population(
     those next to obstacles, where shortest paths bend, and they are repaired at once.
     """
     nodes = population.nodes
-    count = problem.lattice.side * problem.lattice.side
+    count = node_count(problem)
     most = min(initial_nodes, nodes.shape[1] - 2, count)
     for i in range(nodes.shape[0]):
         size = 1 + int(draw(draws) * most) if most > 0 else 0
@@ -62,16 +63,7 @@ def first_population(
             evaluate_segment(nodes, i, k, problem.arrays, problem.memory, counter)
         sum_up(population, i, rates.penalty)
         for _ in range(rates.rounds if i < informed else 0):
-            repair(
-                population,
-                i,
-                scratch,
-                problem,
-                rates.penalty,
-                rates.repair_candidates,
-                draws,
-                counter,
-            )
+            repair(population, i, scratch, problem, rates, draws, counter)
 
 
 @kernel
@@ -99,11 +91,11 @@ def _new_gene(
                 gene = near_node(group, (offset + n) % around, problem)
                 if not contains(nodes, i, size, gene):
                     return gene
-    count = problem.lattice.side * problem.lattice.side
-    gene = int(draw(draws) * count)
-    while contains(nodes, i, size, gene):
-        gene = (gene + 1) % count
-    return gene
+    count = node_count(problem)
+    number = int(draw(draws) * count)
+    while contains(nodes, i, size, node_at(number, problem)):
+        number = (number + 1) % count
+    return node_at(number, problem)
 
 
 @kernel
@@ -123,12 +115,12 @@ def next_children(
 
     It pauses after a feasible child that costs less than ``best``, so that a better path is known
     when it is found, to the caller and to the repairs that follow; and where too few random numbers
-    are left. Called again with the new best, it goes on. Returns the place to go on from: the
-    number of parents, at the end.
+    are left, or no question may be asked any more. Called again with the new best, it goes on.
+    Returns the place to go on from: the number of parents, at the end.
     """
     count = parents.chromosomes.size
     c = first
-    while c < count and left_of(draws) >= most_draws_of_a_pair(rates):
+    while c < count and left_of(draws) >= most_draws_of_a_pair(rates) and not is_spent(counter):
         i = tournament(parents.chromosomes, rates.tournament_size, draws)
         j = tournament(parents.chromosomes, rates.tournament_size, draws)
         d = min(c + 1, count - 1)  # an odd population has a last child without a twin
@@ -155,7 +147,7 @@ def next_children(
 def most_draws_of_a_pair(rates: Rates) -> int:
     """Random numbers that two children take at most."""
     parents = 2 * rates.tournament_size + 3  # whether they are crossed, and where
-    child = 3 + rates.rounds * 8  # mutation: whether, where, what; repair: 4; the others: 2 each
+    child = 3 + rates.rounds * 9  # mutation: whether, where, what; a round: 1; repair: 4; others: 2
     return parents + 2 * child
 
 
@@ -205,29 +197,35 @@ def _do_round(
 
     best : length of the best feasible path so far, metres; infinite before there is one. A repair
         makes a path longer, so it is lost on one that is too long already.
+
+    All in turn, or one of the two that suit the child: repair or deletion while it is infeasible,
+    improvement or deletion then.
     """
     child = children.chromosomes[i]
-    penalty = rates.penalty
     changed = False
+    deletes = True
+    others = True
+    if rates.one_operator:
+        deletes = draw(draws) < 0.5
+        others = not deletes
     if (
-        child.infeasible > 0
+        others
+        and child.infeasible > 0
         and length_of(children, i) < rates.repair_limit * best
         and draw(draws) < rates.repair
     ):
         known = child.cost
-        changed |= repair(
-            children, i, scratch, problem, penalty, rates.repair_candidates, draws, counter
-        )
+        changed |= repair(children, i, scratch, problem, rates, draws, counter)
         note(tally, REPAIR, known, child.cost)
-    if draw(draws) < rates.deletion:
+        if rates.one_operator:
+            return changed
+    if deletes and draw(draws) < rates.deletion:
         known = child.cost
-        changed |= delete(children, i, scratch, problem, penalty, draws, counter)
+        changed |= delete(children, i, scratch, problem, rates, draws, counter)
         note(tally, DELETION, known, child.cost)
-    if child.infeasible == 0 and draw(draws) < rates.improvement:
+    if others and child.infeasible == 0 and draw(draws) < rates.improvement:
         known = child.cost
-        changed |= improve(
-            children, i, scratch, problem, penalty, rates.improvement_radius, draws, counter
-        )
+        changed |= improve(children, i, scratch, problem, rates, draws, counter)
         note(tally, IMPROVEMENT, known, child.cost)
     return changed
 

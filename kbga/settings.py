@@ -1,54 +1,63 @@
-"""The parameters of KBGA: those of the paper, and those that the paper leaves open."""
+"""The parameters of KBGA: those of the paper, and those that the paper leaves open.
+
+:class:`KBGASettings` are the paper's algorithm: what it says, and where it is silent the reading
+that the study `readings` came to. :class:`KBGAPlusSettings` are ours.
+"""
 
 from dataclasses import dataclass
 from math import isfinite
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, Literal
 
-FINEST = 20_000
-"""Finest resolution. Lattice numbers are 32 bits wide, and a byte is kept for each: 400 MB."""
+from kbga.encoding import FINEST
 
 
 @dataclass(frozen=True, slots=True)
 class KBGASettings:
-    """Parameters of the algorithm. Those marked (ours) are choices where the paper is silent.
+    """Parameters of the paper's algorithm. Where the paper is silent, a reading (see `readings`).
 
     population_size : individuals, at least 2 (paper III: 50).
     resolution : lattice units per side of the workspace (paper III: 100 x 100); nodes lie on the
-        crossings of the grid lines, so there are (resolution + 1) ** 2 of them.
-    max_nodes : N_max, the longest chromosome, start and goal included (ours: 48, nearly twice
-        what the most winding optimum of the catalogue needs).
-    initial_nodes : most intermediate nodes of a chromosome in the first population (ours: few,
-        as each makes a collision likely; the operators insert what is missing).
+        crossings of the grid lines. See :func:`kbga.encoding.make_lattice`.
+    max_nodes : N_max, the longest chromosome, start and goal included (the paper names no number:
+        48, nearly twice what the most winding optimum of the catalogue needs).
+    initial_nodes : most intermediate nodes of a chromosome in the first population (a reading).
     informed_share : share of the first population that is built with knowledge of the obstacles:
         of nodes next to them, and repaired at once (future work in paper V; 0: random, as in
         the paper).
     crossover_probability : per pair of parents (paper III: 0.9).
     mutation_probability : per chromosome (paper III: 0.2).
     change_mutation_probability : per chromosome, once, when the environment has changed (paper
-        II-D: "mutation with high mutation rate", ours: that of the other operators. The best
-        chromosome is spared, so that a change elsewhere leaves its path as it is).
+        II-D: "mutation with high mutation rate"; that of the other operators. The best chromosome
+        is spared, so that a change elsewhere leaves its path as it is).
     repair_probability : per infeasible chromosome (paper III: 0.9).
     deletion_probability : per chromosome (paper III: 0.9).
     improvement_probability : per feasible chromosome (paper III: 0.9).
     adaptation_rate : how fast the probabilities of the operators follow what each of them achieves,
         see :mod:`kbga.tuning` (future work in paper V; 0: they stay as they are, as in the paper).
-    tournament_size : individuals that compete to be a parent (ours).
-    penalty : the constant C of Eq. (1), metres of path per metre of collision depth (ours: KBGA
-        comes out alike from 10 to 1000, the plain GA wants 100 or more; at 1 a short cut through a
-        wall of `maze` costs less than the way around it).
-    repair_candidates : nodes tried around the intersected obstacle in one repair (ours).
+    tournament_size : individuals that compete to be a parent (a reading).
+    penalty : the constant C of Eq. (1), metres of path per metre of collision depth (a reading).
+    repair_reach : "the neighboring grids of the intersected obstacle" (paper II-C) are the free
+        lattice nodes within so many units of its boundary (a reading); 0 takes those next to its
+        corners instead, where shortest paths bend (not in the paper).
+    repair_candidates : how many of them are tried in one repair, spread evenly; 0: all (a reading).
+    repair_must_help : whether a repair that costs more than the segment did is taken back (a
+        reading: "the best node available" may be worse than none).
     repair_limit : a chromosome is repaired only while its length is below this many times the best
-        feasible path's (ours: a repair makes a path longer, so one that is longer already is not
-        worth the checks, which were most of all. ``inf`` repairs without regard to that).
-    improvement_radius : longest step of the local search around a node, lattice units (ours).
-    rounds : how often at most a child meets repair, deletion and improvement in one generation,
-        each time by probability and heuristic; a round without effect is the last (ours: the
-        paper has "one or more" operators work on a child. One round is the plainest reading, but
-        then a child on a new route rarely lives until it is repaired, and the population settles
-        on the first routes found).
-    max_generations : first stop criterion (ours; the paper's plain GA ran beyond 444).
-    stagnation : second stop criterion, generations without a better solution (ours). It counts
+        feasible path's. ``inf`` repairs without regard to that, as the paper does.
+    improvement_radius : longest step of the local search around a node, lattice units; 0: one step
+        to the best of the eight neighbours, and no more (the plainest reading).
+    rounds : how often at most a child meets the specialised operators in one generation, each time
+        by probability and heuristic; a round without effect is the last (the paper has "one or more
+        genetic operators" work on a child: 1).
+    one_operator : whether a round fires one of the specialised operators that suit the child, or
+        all of them in turn (a reading).
+    remembers : whether nodes that improvement or deletion found settled are not drawn again until
+        a neighbour changes (not in the paper, which draws "randomly").
+    generations_counted : what "generations needed" counts: those until the "best" was found, or
+        until the "stop" (a reading; it changes tables, not runs).
+    max_generations : first stop criterion (the paper's plain GA ran beyond 444).
+    stagnation : second stop criterion, generations without a better solution (a reading). It counts
         only once there is a feasible path: before that, more generations are all that helps.
     """
 
@@ -65,11 +74,16 @@ class KBGASettings:
     improvement_probability: float = 0.9
     adaptation_rate: float = 0.0
     tournament_size: int = 2
-    penalty: float = 100.0
-    repair_candidates: int = 12
-    repair_limit: float = 1.0
-    improvement_radius: int = 8
-    rounds: int = 8
+    penalty: float = 10.0
+    repair_reach: int = 1
+    repair_candidates: int = 0
+    repair_must_help: bool = False
+    repair_limit: float = float("inf")
+    improvement_radius: int = 0
+    rounds: int = 1
+    one_operator: bool = False
+    remembers: bool = False
+    generations_counted: Literal["best", "stop"] = "best"
     max_generations: int = 500
     stagnation: int = 15
 
@@ -80,8 +94,9 @@ class KBGASettings:
             ("max_nodes", 2),
             ("initial_nodes", 1),
             ("tournament_size", 1),
-            ("repair_candidates", 1),
-            ("improvement_radius", 1),
+            ("repair_reach", 0),
+            ("repair_candidates", 0),
+            ("improvement_radius", 0),
             ("rounds", 1),
             ("max_generations", 1),
             ("stagnation", 1),
@@ -106,8 +121,41 @@ class KBGASettings:
             raise ValueError(f"resolution is {self.resolution}; it must be at most {FINEST}")
         if not (_is_number(self.repair_limit) and self.repair_limit > 0.0):
             raise ValueError(f"repair_limit is {self.repair_limit!r}; it must be above 0")
+        for name in ("repair_must_help", "one_operator", "remembers"):
+            if not isinstance(getattr(self, name), bool):
+                raise ValueError(f"{name} is {getattr(self, name)!r}; it must be true or false")
+        if self.generations_counted not in ("best", "stop"):
+            raise ValueError(
+                f"generations_counted is {self.generations_counted!r}; it must be 'best' or 'stop'"
+            )
         if not (_is_number(self.penalty) and isfinite(self.penalty) and self.penalty >= 0.0):
             raise ValueError(f"penalty is {self.penalty!r}; it must be 0 or more, and finite")
+
+
+@dataclass(frozen=True, slots=True)
+class KBGAPlusSettings(KBGASettings):
+    """Parameters of KBGA-plus: the paper's algorithm, and what we found to make it better.
+
+    Each of these differs from the paper's, and what each brings is measured (matrix `plus`); the
+    others are those of :class:`KBGASettings`.
+
+    penalty : 100: KBGA-plus comes out alike from 10 to 1000.
+    repair_reach : 0: a repair tries nodes next to corners, where shortest paths bend.
+    repair_candidates : 12 of them.
+    repair_limit : 1: a repair makes a path longer, so one that is longer already than the best
+        feasible one is not worth the checks.
+    improvement_radius : 8: the search goes on from each better place, its steps doubled or halved.
+    rounds : 8: a child on a new route lives until it is repaired.
+    remembers : no node is tried again that can't have changed.
+    """
+
+    penalty: float = 100.0
+    repair_reach: int = 0
+    repair_candidates: int = 12
+    repair_limit: float = 1.0
+    improvement_radius: int = 8
+    rounds: int = 8
+    remembers: bool = True
 
 
 def _is_number(value: Any) -> bool:

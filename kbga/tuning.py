@@ -27,8 +27,11 @@ class Rates(NamedTuple):
     penalty: float
     repair_candidates: int
     repair_limit: float
+    repair_must_help: bool
     improvement_radius: int
     rounds: int
+    one_operator: bool
+    remembers: bool
 
 
 def rates_of(settings: KBGASettings) -> Rates:
@@ -44,8 +47,11 @@ def rates_of(settings: KBGASettings) -> Rates:
         float(settings.penalty),
         int(settings.repair_candidates),
         float(settings.repair_limit),
+        bool(settings.repair_must_help),
         int(settings.improvement_radius),
         int(settings.rounds),
+        bool(settings.one_operator),
+        bool(settings.remembers),
     )
 
 

@@ -5,6 +5,7 @@ from typing import Any
 from suite.harness.matrix import load_matrix, matrix_file, matrix_names
 from suite.plugins import available_planners
 from suite.scenes.catalogue import (
+    aligned_names,
     dynamic_names,
     generated_names,
     load_scene,
@@ -20,36 +21,40 @@ def scenes_listing() -> list[dict[str, Any]]:
 
     Dynamic ones are listed as they are drawn; their optimum changes as they do.
     Of generated scenes it says what their names say: to draw them all takes seconds.
+    Controls come last: scenes as they were once drawn, with corners on many lattices.
     """
-    rows: list[dict[str, Any]] = []
-    for name in (*scene_names(), *dynamic_names()):
-        scene = load_scene(name)
-        rows.append(
-            {
-                "name": name,
-                "obstacles": len(scene.obstacles),
-                "vertices": scene.vertex_count,
-                "parts": scene.part_count,
-                "optimum": scene.stored_optimum(scene.query()),
-                "queries": [query.name for query in scene.queries],
-                "figure": scene.properties.get("figure"),
-                "generated": False,
-                "dynamic": scene.is_dynamic,
-                "path": str(scene_file(name)),
-            }
-        )
+    rows = [_listed(name) for name in (*scene_names(), *dynamic_names())]
+    controls = [_listed(name) for name in aligned_names()]
     for name in generated_names():
         parts, _ = parse_scattered_name(name) or (None, None)
         is_dynamic = parse_moving_name(name) is not None
         known = {"name": name, "parts": parts, "generated": True, "dynamic": is_dynamic}
-        rows.append(dict.fromkeys(rows[0]) | known)
-    return rows
+        rows.append(dict.fromkeys(rows[0]) | known | {"control": False})
+    return rows + controls
+
+
+def _listed(name: str) -> dict[str, Any]:
+    """A scene of the catalogue that is a file.""" 
+    scene = load_scene(name)
+    return {
+        "name": name,
+        "obstacles": len(scene.obstacles),
+        "vertices": scene.vertex_count,
+        "parts": scene.part_count,
+        "optimum": scene.stored_optimum(scene.query()),
+        "queries": [query.name for query in scene.queries],
+        "figure": scene.properties.get("figure"),
+        "generated": False,
+        "dynamic": scene.is_dynamic,
+        "control": name in aligned_names(),
+        "path": str(scene_file(name)),
+    }
 
 
 def scene_for_people(row: dict[str, Any]) -> dict[str, Any]:
     """One of :func:`scenes_listing` in few columns: paths are too long for a line."""
     chosen = ("name", "obstacles", "parts", "optimum", "queries", "figure")
-    kinds = [kind for kind in ("generated", "dynamic") if row[kind]]
+    kinds = [kind for kind in ("generated", "dynamic", "control") if row[kind]]
     return {name: row[name] for name in chosen} | {"kind": kinds}
 
 

@@ -15,13 +15,13 @@ from pathlib import Path
 
 from suite.errors import StoreError
 from suite.record import Cell
-from suite.store import BELONGINGS, Store, read_runs
+from suite.store import BELONGINGS, Store, columns_of, read_runs
 from suite.stored_cells import stored_cell
 
 MOST_NAMED = 5
 """Rows that are named one by one; of more it is said how many each planner has."""
 
-OUTCOME = ("status", "cost", "generations", "checks")
+OUTCOME = ("status", "cost", "generations", "checks", "computed_checks")
 """What two runs of one key must agree on, beside the path, to be called the same."""
 
 
@@ -124,7 +124,9 @@ def _named(cells: Sequence[Cell]) -> list[str]:
 
 def _conflicts(connection: sqlite3.Connection) -> dict[str, Cell]:
     """The cells of the rows that are in both with another outcome, by their keys."""
-    differs = " OR ".join(f"mine.{name} IS NOT its.{name}" for name in OUTCOME)
+    # A store that is older than a column says nothing of it.
+    known = [name for name in OUTCOME if name in columns_of(connection, "runs", "other")]
+    differs = " OR ".join(f"mine.{name} IS NOT its.{name}" for name in known)
     found = connection.execute(
         "SELECT mine.* FROM other.runs AS its JOIN main.runs AS mine USING (key) "
         "LEFT JOIN other.paths AS its_path USING (key) "
@@ -174,7 +176,8 @@ def _add_missing(connection: sqlite3.Connection) -> int:
 
 
 def _copy_runs(connection: sqlite3.Connection, old: int, new: int | None) -> None:
-    names = [row[1] for row in connection.execute("PRAGMA main.table_info(runs)")]
+    there = columns_of(connection, "runs", "other")
+    names = [name for name in columns_of(connection, "runs") if name in there]
     chosen = ", ".join("?" if name == "session" else name for name in names)
     connection.execute(
         f"INSERT INTO main.runs ({', '.join(names)}) SELECT {chosen} FROM other.runs "

@@ -62,7 +62,8 @@ class Budget:
     """What a run may use; None means no limit. A planner keeps those that it can count.
 
     wall_s : float, seconds of wall time.
-    cpu_s : float, seconds of CPU time of the run's process.
+    cpu_s : float, seconds of CPU time of the run's process, all its threads together, as
+        ``recorder.cpu_s()`` counts them. A busy machine stretches the run, and leaves it as much.
     generations : int, generations (or iterations, for planners that iterate).
     checks : int, questions whether a segment is free, asked of the scene. One that a planner
         answers from what it remembers is a question too: checks mean the same for everybody.
@@ -305,14 +306,15 @@ def refusal(planner: Planner, scene: Scene, query: Query, budget: Budget) -> str
     planner : Planner
     scene, query, budget : as :meth:`Planner.plan` takes them.
     """
-    counts = [name for name in ("generations", "checks") if getattr(budget, name) is not None]
+    limits = ("generations", "checks", "cpu_s")
+    given = [name for name in limits if getattr(budget, name) is not None]
     kept = planner.abilities.budgets
-    if budget.wall_s is not None or not counts or kept.intersection(counts):
+    if budget.wall_s is not None or not given or kept.intersection(given):
         return planner.refuse(scene, query, budget)
     instead = (
         f"Give one that it keeps: {', '.join(sorted(kept))}" if kept else "It keeps none: give none"
     )
-    return f"{planner.name} keeps no budget of {' or '.join(counts)}. {instead}."
+    return f"{planner.name} keeps no budget of {' or '.join(given)}. {instead}."
 
 
 class Replanner(ABC):

@@ -78,6 +78,14 @@ class Cell:
 
         So it is if the budget is of time, or if the time that planning takes moves the world on.
         """
+        return self.load_counts or self.budget.cpu_s is not None
+
+    @property
+    def load_counts(self) -> bool:
+        """Whether the outcome depends on what else the machine does: a busy one has less to give.
+
+        So it does where wall time ends the run or moves the world on; not where CPU time does.
+        """
         is_charged = self.world is not None and self.world.settings.get("charge") == "measured"
         return is_charged or self.budget.wall_s is not None
 
@@ -85,12 +93,15 @@ class Cell:
     def budget_as_dict(self) -> dict[str, float | int | None]:
         """The budget as plain data."""
         budget = self.budget
-        return {
+        data: dict[str, float | int | None] = {
             # 1 and 1.0 are the same budget; a store knows the second only.
             "wall_s": None if budget.wall_s is None else float(budget.wall_s),
             "generations": budget.generations,
             "checks": budget.checks,
         }
+        # Only where it is given: the keys of rows that were made before there was such a budget
+        # stay what they are.
+        return data if budget.cpu_s is None else data | {"cpu_s": float(budget.cpu_s)}
 
     @property
     def key(self) -> str:
@@ -135,11 +146,17 @@ class RunRecord:
     segments : number of segments of the accepted path.
     turning : sum of the angles by which the accepted path turns, radians.
     generations, generation_of_best : in all, and until the final best was first found.
-    checks : collision checks of a segment against the scene.
+    checks : questions asked whether a segment is free of the scene's obstacles.
+    computed_checks : those of them that were computed and not answered from memory; None if the
+        planner remembers none: all of them.
     wall_s, cpu_s : seconds that ``plan`` took.
     time_to_best_s, cpu_to_best_s : seconds until the final best was first found.
     load : load average of the machine when the run began, last minute.
-    contended : whether ``plan`` waited for the processor: wall time above CPU time by a tenth.
+    contended : whether ``plan`` waited for the processor: wall time above CPU time by a tenth. Then
+        its times say as much of the machine as of the planner, and so does what came of it if it
+        was ended by the clock.
+    attempts : how often it was run, for want of a processor of its own; this is the record of the
+        first run that had one, or else of the first of all.
     host : name of the machine.
     started_at : date and time, ISO 8601, UTC.
     improvements : what the planner reported while it ran.
@@ -165,12 +182,14 @@ class RunRecord:
     generations: int | None = None
     generation_of_best: int | None = None
     checks: int | None = None
+    computed_checks: int | None = None
     wall_s: float | None = None
     time_to_best_s: float | None = None
     cpu_s: float | None = None
     cpu_to_best_s: float | None = None
     load: float | None = None
     contended: bool | None = None
+    attempts: int | None = 1
     host: str | None = None
     started_at: str | None = None
     improvements: tuple[Improvement, ...] = ()

@@ -11,7 +11,7 @@ from numbers import Integral
 from typing import Any
 
 from suite.errors import ContractError
-from suite.planner import Improvement, Recorder
+from suite.planner import Improvement, Plan, Recorder
 
 LARGEST_COUNT = 2**63 - 1
 """What a column of a store can hold."""
@@ -40,6 +40,30 @@ def as_count(value: Any, name: str) -> int | None:
     if not 0 <= count <= LARGEST_COUNT or isinstance(value, str):
         raise ContractError(f"{name} is {value!r}. It must be a whole number, 0 or more, or None.")
     return count
+
+
+def as_checks(plan: Plan) -> tuple[int | None, int | None]:
+    """The checks of a plan that were asked, and those of them that were computed.
+
+    Raises
+    ------
+    ContractError
+        If one is no count, or more were computed than asked.
+
+    Examples
+    --------
+    >>> from suite.planner import PlanStatus
+    >>> as_checks(Plan(PlanStatus.EXHAUSTED, checks=500, computed_checks=120))
+    (500, 120)
+    """
+    asked = as_count(plan.checks, "checks of the plan")
+    computed = as_count(plan.computed_checks, "computed_checks of the plan")
+    if computed is not None and (asked is None or computed > asked):
+        raise ContractError(
+            f"computed_checks of the plan are {computed}, and its checks {asked}. What is computed "
+            "was asked: give both, computed_checks no more than checks."
+        )
+    return asked, computed
 
 
 def as_measure(value: Any, name: str) -> float:

@@ -11,6 +11,7 @@ import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import fields
+from functools import cache
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -42,12 +43,12 @@ CREATE TABLE runs (
     status TEXT NOT NULL, reason TEXT,
     cost REAL, claimed_cost REAL, claim_differs INTEGER, optimum REAL, gap REAL,
     clearance REAL, segments INTEGER, turning REAL,
-    generations INTEGER, generation_of_best INTEGER, checks INTEGER,
+    generations INTEGER, generation_of_best INTEGER, checks INTEGER, computed_checks INTEGER,
     wall_s REAL, time_to_best_s REAL, cpu_s REAL, cpu_to_best_s REAL,
-    load REAL, contended INTEGER,
+    load REAL, contended INTEGER, attempts INTEGER,
     planner TEXT NOT NULL, distribution TEXT NOT NULL, version TEXT NOT NULL,
     settings TEXT NOT NULL, settings_hash TEXT NOT NULL, world_settings TEXT, cold INTEGER NOT NULL,
-    budget_wall_s REAL, budget_generations INTEGER, budget_checks INTEGER,
+    budget_wall_s REAL, budget_generations INTEGER, budget_checks INTEGER, budget_cpu_s REAL,
     scene_source TEXT NOT NULL, scene_hash TEXT NOT NULL,
     host TEXT, started_at TEXT, details TEXT NOT NULL, stderr TEXT NOT NULL
 );
@@ -131,6 +132,24 @@ class Store:
         """How the rows that are there ended, by their keys."""
         with _explained(self.path):
             return dict(self._connection.execute("SELECT key, status FROM runs"))
+
+    def contended(self) -> set[str]:
+        """Keys of the rows whose runs waited for the processor."""
+        with _explained(self.path):
+            rows = self._connection.execute("SELECT key FROM runs WHERE contended")
+            return {key for (key,) in rows}
+
+    def attempts(self) -> dict[str, int]:
+        """How often each row was run, by its key."""
+        with _explained(self.path):
+            return dict(self._connection.execute("SELECT key, coalesce(attempts, 1) FROM runs"))
+
+    def count_attempt(self, key: str) -> None:
+        """Note that a row was run once more and stays as it was."""
+        with self._writing() as connection:
+            connection.execute(
+                "UPDATE runs SET attempts = coalesce(attempts, 1) + 1 WHERE key = ?", (key,)
+            )
 
     def want(self, matrix: str, cells: Iterable[Cell]) -> None:
         """Write down what a matrix wants, in place of what it wanted before: for those who ask."""
@@ -250,18 +269,33 @@ def _open_for_writing(path: Path) -> sqlite3.Connection:
                 _create_tables(connection)
         _check_is_store(path, connection)
         with _explained(path):
-            _add_positions(connection)
+            _add_columns(connection)
     except BaseException:
         connection.close()
         raise
     return connection
 
 
-def _add_positions(connection: sqlite3.Connection) -> None:
-    """Stores that are older than this column are stores of the same version without it."""
-    names = [row[1] for row in connection.execute("PRAGMA table_info(wanted)")]
-    if "position" not in names:
-        connection.execute("ALTER TABLE wanted ADD COLUMN position INTEGER")
+def _add_columns(connection: sqlite3.Connection) -> None:
+    """Stores that are older than a column are stores of the same version without it."""
+    for table in ("runs", "wanted"):
+        there = columns_of(connection, table)
+        for name, kind in _columns_now(table).items():
+            if name not in there:
+                connection.execute(f"ALTER TABLE {table} ADD COLUMN {name} {kind}")
+
+
+def columns_of(connection: sqlite3.Connection, table: str, database: str = "main") -> list[str]:
+    """Names of the columns that a table has in a file, which may be older than this code."""
+    return [row[1] for row in connection.execute(f"PRAGMA {database}.table_info({table})")]
+
+
+@cache
+def _columns_now(table: str) -> dict[str, str]:
+    """Names and types of the columns of a table in a store that is made today, in their order."""
+    with closing(sqlite3.connect(":memory:")) as connection:
+        connection.executescript(SCHEMA)
+        return {row[1]: row[2] for row in connection.execute(f"PRAGMA table_info({table})")}
 
 
 def _locked(path: Path) -> BaseFileLock:
@@ -343,13 +377,18 @@ def read_runs(path: Path) -> pd.DataFrame:
         have a ``world``.
     """
     frame = _read(path, "SELECT * FROM runs ORDER BY position, rowid")
+    # An older kbga-bench wrote without some of them, a younger one added those at the end.
+    frame = frame.reindex(columns=list(_columns_now("runs")))
     for column in ("claim_differs", "contended", "cold"):
         frame[column] = frame[column].astype("boolean")
-    for column in ("segments", "generations", "generation_of_best", "checks"):
+    for column in (
+        "segments", "generations", "generation_of_best", "checks", "computed_checks", "attempts",
+    ):  # fmt: skip
         frame[column] = frame[column].astype("Int64")
     numbers = [
         "cost", "claimed_cost", "optimum", "gap", "clearance", "turning", "wall_s",
         "time_to_best_s", "cpu_s", "cpu_to_best_s", "load", "budget_wall_s",
+        "budget_cpu_s",
     ]  # fmt: skip
     # A column without a single value would arrive as objects.
     frame[numbers] = frame[numbers].astype("float64")

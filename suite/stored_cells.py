@@ -28,15 +28,19 @@ def stored_cell(row: Mapping[Any, Any]) -> Cell:
         settings = json.loads(row["world_settings"])
         world = World(row["world"], settings, bool(row["cold"]))
     counts = {name: _whole(row[f"budget_{name}"]) for name in ("generations", "checks")}
-    wall_s = row["budget_wall_s"]
+    wall_s, cpu_s = (_seconds(row.get(f"budget_{name}")) for name in ("wall_s", "cpu_s"))
     return Cell(
         **{name: row[name] for name in _SAME_NAME},
         settings=json.loads(row["settings"]),
-        budget=Budget(None if pd.isna(wall_s) else float(wall_s), **counts),
+        budget=Budget(wall_s, cpu_s=cpu_s, **counts),
         seed=int(row["seed"]),
         world=world,
         position=int(row["position"]),
     )
+
+
+def _seconds(value: Any) -> float | None:
+    return None if value is None or pd.isna(value) else float(value)
 
 
 def _whole(value: Any) -> int | None:

@@ -7,6 +7,7 @@ from kbga.encoding import NEEDED, NEEDED_IF_FEASIBLE, Population, close_columns,
 from kbga.evaluation import evaluate_within, is_free_segment, sum_up
 from kbga.operators.detour import Scratch
 from kbga.problem import Problem
+from kbga.tuning import Rates
 from suite.compiled import kernel
 
 
@@ -32,7 +33,7 @@ def delete(
     i: int,
     scratch: Scratch,
     problem: Problem,
-    penalty: float,
+    rates: Rates,
     draws: Draws,
     counter: np.ndarray,
 ) -> bool:
@@ -43,6 +44,7 @@ def delete(
     must stay feasible, even where a short cut through an obstacle would cost less.
     """
     nodes, arrays, memory = population.nodes, problem.arrays, problem.memory
+    penalty = rates.penalty
     feasible = population.chromosomes[i].infeasible == 0
     known = NEEDED_IF_FEASIBLE if feasible else NEEDED
     k = _random_node(nodes, i, population.chromosomes[i].intermediate, known, draws)
@@ -64,7 +66,7 @@ def delete(
             trial, 0, 0, arrays, memory, length, penalty, known_cost, counter
         )
     if not beneficial:
-        nodes[i, k].needed = known
+        nodes[i, k].needed = known if rates.remembers else 0
         return False
     nodes[i, k - 1] = trial[0, 0]
     close_columns(population, i, k, 1)

@@ -15,6 +15,10 @@ CANDIDATE = np.dtype([("gene", np.int64), ("length", np.float64)], align=True)
 """A node that may be tried: its lattice number, and the length of the way over it, metres."""
 
 
+NEIGHBOURS = 8
+"""Lattice nodes around one."""
+
+
 class Scratch(NamedTuple):
     """Where the operators try things, so that nothing is allocated within a generation.
 

@@ -7,6 +7,7 @@ from kbga.encoding import Population, contains, forget, set_node
 from kbga.evaluation import is_free_segment, sum_up
 from kbga.operators.detour import Scratch, bring_shortest_forward, list_candidate
 from kbga.problem import Problem, is_known_usable
+from kbga.tuning import Rates
 from suite.compiled import kernel
 
 # The eight neighbours of a node, by columns and rows.
@@ -33,9 +34,9 @@ def _move(
     Whether it moved.
     """
     lattice, arrays, memory = problem.lattice, problem.arrays, problem.memory
-    side = lattice.side
+    columns, rows = lattice.columns, lattice.rows
     trial, candidates = scratch.nodes, scratch.candidates
-    column, row = nodes[i, k].gene % side, nodes[i, k].gene // side
+    column, row = nodes[i, k].gene % columns, nodes[i, k].gene // columns
     trial[0, 0] = nodes[i, k - 1]
     trial[0, 2] = nodes[i, k + 1]
     limit = nodes[i, k - 1].length + nodes[i, k].length - _LEAST_GAIN
@@ -43,8 +44,8 @@ def _move(
     for neighbour in range(8):
         new_column = column + step * _COLUMNS[neighbour]
         new_row = row + step * _ROWS[neighbour]
-        if 0 <= new_column < side and 0 <= new_row < side:
-            listed = list_candidate(scratch, count, new_row * side + new_column, lattice)
+        if 0 <= new_column < columns and 0 <= new_row < rows:
+            listed = list_candidate(scratch, count, new_row * columns + new_column, lattice)
             count = listed if candidates[count].length < limit else count
     for c in range(count):
         bring_shortest_forward(candidates, c, count)
@@ -62,17 +63,17 @@ def _move(
 
 
 @kernel
-def _is_crowded(nodes: np.ndarray, i: int, size: int, k: int, side: int) -> bool:
+def _is_crowded(nodes: np.ndarray, i: int, size: int, k: int, columns: int) -> bool:
     """Whether a lattice neighbour of node k is in the path already, elsewhere than beside k.
 
     It may be a better place, and may leave the path later without anything changing beside k.
     """
-    column, row = nodes[i, k].gene % side, nodes[i, k].gene // side
+    column, row = nodes[i, k].gene % columns, nodes[i, k].gene // columns
     for m in range(1, size + 1):
         if (
             abs(m - k) > 1
-            and abs(nodes[i, m].gene % side - column) <= 1
-            and abs(nodes[i, m].gene // side - row) <= 1
+            and abs(nodes[i, m].gene % columns - column) <= 1
+            and abs(nodes[i, m].gene // columns - row) <= 1
         ):
             return True
     return False
@@ -100,16 +101,15 @@ def improve(
     i: int,
     scratch: Scratch,
     problem: Problem,
-    penalty: float,
-    radius: int,
+    rates: Rates,
     draws: Draws,
     counter: np.ndarray,
 ) -> bool:
     """Improve a random node of chromosome i if that is feasible; whether the node moved.
 
-    A pattern search over the neighbours: steps that help are doubled, up to ``radius`` lattice
-    units, others halved, until a step of one unit does not help. Then the node is settled until
-    a neighbour changes.
+    One step to the best neighbour; or a pattern search over the neighbours: steps that help are
+    doubled, up to ``improvement_radius`` lattice units, others halved, until a step of one unit
+    does not help. A node without a better neighbour is settled until a neighbour changes.
     """
     size = population.chromosomes[i].intermediate
     if population.chromosomes[i].infeasible > 0:
@@ -123,12 +123,18 @@ def improve(
     while step > 0:
         if _move(nodes, i, size, k, step, scratch, problem, counter):
             moved = True
-            step = min(2 * step, radius)
+            if rates.improvement_radius == 0:
+                break
+            step = min(2 * step, rates.improvement_radius)
         else:
             step //= 2
     if moved:
         forget(nodes, i, k - 1, k + 1)
-        sum_up(population, i, penalty)
-    if not _is_crowded(nodes, i, size, k, problem.lattice.side):
+        sum_up(population, i, rates.penalty)
+    if (
+        rates.remembers
+        and step == 0
+        and not _is_crowded(nodes, i, size, k, problem.lattice.columns)
+    ):
         nodes[i, k].settled = 1
     return moved

@@ -5,7 +5,7 @@ import numpy as np
 from kbga.draws import Draws, draw
 from kbga.encoding import Population, contains, forget, set_node
 from kbga.evaluation import evaluate_segment, sum_up
-from kbga.problem import Problem
+from kbga.problem import Problem, node_at, node_count
 from suite.compiled import kernel
 
 
@@ -24,13 +24,14 @@ def mutate(
     """
     nodes, arrays, memory = population.nodes, problem.arrays, problem.memory
     size = population.chromosomes[i].intermediate
-    count = problem.lattice.side * problem.lattice.side
+    count = node_count(problem)
     if size == 0 or size == count:
         return False
     k = 1 + int(draw(draws) * size)
-    gene = int(draw(draws) * count)
-    while contains(nodes, i, size, gene):
-        gene = (gene + 1) % count
+    number = int(draw(draws) * count)
+    while contains(nodes, i, size, node_at(number, problem)):
+        number = (number + 1) % count
+    gene = node_at(number, problem)
     set_node(nodes, i, k, gene, problem.lattice)
     forget(nodes, i, k - 1, k + 1)
     evaluate_segment(nodes, i, k - 1, arrays, memory, counter)

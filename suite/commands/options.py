@@ -24,7 +24,12 @@ class TableFormat(StrEnum):
 
 
 SceneArgument = Annotated[
-    str, typer.Argument(metavar="SCENE", help="Name in the catalogue, or path of a scene file.")
+    str,
+    typer.Argument(
+        metavar="SCENE",
+        help="Name in the catalogue, or path of a scene file; modified, if you like: "
+        "zigzag@turn=17,shift=0.37, my.geojson@twin=3.",
+    ),
 ]
 StoreArgument = Annotated[Path, typer.Argument(metavar="STORE", help="Result store (SQLite).")]
 PlannerOption = Annotated[str, typer.Option(help="Name of the planner; see `list planners`.")]
@@ -44,10 +49,16 @@ PluginOption = Annotated[
     ),
 ]
 WallOption = Annotated[float | None, typer.Option(help="Budget of a plan: seconds of wall time.")]
+CpuOption = Annotated[
+    float | None,
+    typer.Option(help="Budget of a plan: seconds of CPU time, on any machine load."),
+]
 GenerationsOption = Annotated[
     int | None, typer.Option(help="Budget of a plan: generations or iterations.")
 ]
-ChecksOption = Annotated[int | None, typer.Option(help="Budget of a plan: collision checks.")]
+ChecksOption = Annotated[
+    int | None, typer.Option(help="Budget of a plan: collision checks, as questions asked.")
+]
 TextStyle = Annotated[TextFormat, typer.Option("--format", help="For people or programs.")]
 TableStyle = Annotated[TableFormat, typer.Option("--format", help="How to print them.")]
 

@@ -12,6 +12,7 @@ import typer
 
 from suite.commands.options import (
     ChecksOption,
+    CpuOption,
     GenerationsOption,
     PlannerOption,
     PluginOption,
@@ -43,6 +44,7 @@ def plan(
     settings: SettingsOption = None,
     plugin: PluginOption = None,
     wall_s: WallOption = None,
+    cpu_s: CpuOption = None,
     generations: GenerationsOption = None,
     checks: ChecksOption = None,
     plot: Annotated[
@@ -67,7 +69,7 @@ def plan(
         seed=seed,
         query=query,
         settings=parse_settings(settings or []),
-        budget=Budget(wall_s, generations, checks),
+        budget=Budget(wall_s, generations, checks, cpu_s),
     )
     # Of the first population only: more would slow down the run that is timed.
     recorder = Recorder(snapshot_of=lambda generation: plot is not None and generation == 0)
@@ -201,6 +203,7 @@ def simulate(
         Charge, typer.Option(help="Simulated time that planning takes: its own, or none.")
     ] = Charge.MEASURED,
     wall_s: WallOption = None,
+    cpu_s: CpuOption = None,
     generations: GenerationsOption = None,
     checks: ChecksOption = None,
     plot: Annotated[
@@ -255,7 +258,7 @@ def simulate(
         seed=seed,
         query=query,
         settings=parse_settings(settings or []),
-        budget=Budget(wall_s, generations, checks),
+        budget=Budget(wall_s, generations, checks, cpu_s),
         world=world_for(scene, overrides, cold=cold),
     )
     with print_aside():

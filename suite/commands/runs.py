@@ -66,12 +66,25 @@ def run(
         int,
         typer.Option(min=0, help="Keep the populations of so many runs, for the report's player."),
     ] = 40,
+    patience: Annotated[
+        float,
+        typer.Option(
+            min=0.0,
+            envvar="KBGA_BENCH_PATIENCE",
+            metavar="SECONDS",
+            help="On a busy machine: wait so long in all for free cores, with runs that wall time "
+            "ends, and then run contended rows again for so long; 0: neither.",
+        ),
+    ] = 60.0,
     plugin: PluginOption = None,
 ) -> None:
     """Run what a store still lacks of a matrix, each run in a process of its own.
 
     It can be stopped at any time and started again: only the runs in flight are lost. At the end
     some runs of planners with a population are done again, outside any clock, to keep it.
+
+    A run that had no core for itself is contended: no table compares its times, nor what came of it
+    if wall time ended it. Such rows are run again, a few times each; what is still contended stays.
 
     Exit code 0 if all is done, 1 if rows of other stores differ that should be the same bit for
     bit (see `merge`), 130 after Ctrl-C.
@@ -82,6 +95,7 @@ def run(
     """
     from suite.harness.display import Display
     from suite.harness.matrix import load_matrix
+    from suite.harness.repeat import repeat_contended
     from suite.harness.run import Which, run_matrix
     from suite.harness.snapshots import keep_snapshots
     from suite.store import open_store
@@ -113,6 +127,17 @@ def run(
                     jobs=jobs,
                     quick=quick,
                     which=which,
+                    patience_s=patience,
+                    executor=cluster,
+                    on_progress=display,
+                )
+                end = repeat_contended(
+                    wanted,
+                    opened,
+                    end,
+                    patience_s=patience,
+                    jobs=jobs,
+                    quick=quick,
                     executor=cluster,
                     on_progress=display,
                 )

@@ -52,6 +52,11 @@ def list_command(
 ) -> None:
     """List what there is: scenes, planners or matrices; as JSON with the paths of their files.
 
+    Any scene may be modified where it is named, by what stands behind an @: zigzag@turn=17 is
+    turned by 17 degrees, zigzag@shift=0.37:-0.2 moved (metres), zigzag@scale=1.5 larger, and
+    zigzag@twin=3 turned and moved at random, by the seed 3; zigzag@turn=17,shift=0.37 is both.
+    Controls are scenes as they were once drawn, with corners on many lattices.
+
     Example: kbga-bench list planners --format json
     """
     from suite import listing

@@ -14,7 +14,7 @@ SEEDS = (1, 2, 3, 4)
 SUBJECTS = 4
 """How many are kept in mind: rules that build on others ask for the same runs again."""
 
-TIMED = NotApplicable("it keeps no budget but wall time, and timed runs need not repeat.")
+TIMED = NotApplicable("it keeps no budget but of time, and timed runs need not repeat.")
 UNREPEATED = NotApplicable("two runs with the same seed differ already.")
 UNPLANNED = NotApplicable("not all runs end with a plan.")
 
@@ -114,7 +114,7 @@ def _hindrance(subject: Subject) -> NotApplicable | None:
 
 def difference(one: tuple[Any, ...], other: tuple[Any, ...]) -> str:
     """What two outcomes of :class:`Trial` differ in, in words."""
-    names = ("status", "path", "generations", "checks", "reports")
+    names = ("status", "path", "generations", "checks", "computed checks", "reports")
     if len(one) != len(names) or len(other) != len(names):
         return "whether they end well"
     pairs = zip(names, one, other, strict=True)

@@ -42,6 +42,7 @@ RULES: tuple[Rule, ...] = (
     budgets.keeps_generations,
     budgets.keeps_checks,
     budgets.keeps_wall_time,
+    budgets.keeps_cpu_time,
     budgets.ends_or_refuses_whatever_the_budget,
     replanned.replans_end_with_a_plan,
     replanned.replans_suit_what_is_known,

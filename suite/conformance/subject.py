@@ -7,7 +7,7 @@ path is judged. The scene that it is given is its own: the judge has another.
 import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -20,7 +20,7 @@ from suite.exact import shortest_path
 from suite.global_generators import seed_globals
 from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder, refusal
 from suite.referee import Referee, Verdict
-from suite.reported import as_count
+from suite.reported import as_checks, as_count
 from suite.scene import Query, Scene
 
 CLAIMABLE = (PlanStatus.SOLVED, PlanStatus.INFEASIBLE, PlanStatus.EXHAUSTED)
@@ -45,7 +45,7 @@ class Run:
     refusal : what ``refuse`` returned.
     returned : what ``plan`` returned; None if it was not called.
     error : the end of the traceback, if anything raised.
-    wall_s : what ``plan`` took, seconds.
+    wall_s, cpu_s : what ``plan`` took, seconds.
     prepared : attributes of the planner that ``refuse`` has set.
     restarted : whether ``plan`` set the recorder's clock to zero.
     """
@@ -55,6 +55,7 @@ class Run:
     returned: Any = None
     error: str | None = None
     wall_s: float = 0.0
+    cpu_s: float = 0.0
     prepared: tuple[str, ...] = ()
     restarted: bool = False
 
@@ -138,7 +139,8 @@ class Trial:
             return (str(self.run.refusal), self.run.error)
         told = tuple((i.cost, i.generation, i.checks) for i in self.run.recorder.improvements)
         path = None if plan.path is None else np.asarray(plan.path, dtype=np.float64).tobytes()
-        return (str(plan.status), path, plan.generations, plan.checks, told)
+        counts = (plan.generations, plan.checks, plan.computed_checks)
+        return (str(plan.status), path, *counts, told)
 
 
 class Subject:
@@ -175,12 +177,14 @@ class Subject:
             return Budget(generations=GENERATIONS)
         if "checks" in budgets:
             return Budget(checks=CHECKS)
-        return Budget(wall_s=WALL_S) if "wall_s" in budgets else Budget()
+        if "wall_s" in budgets:
+            return Budget(wall_s=WALL_S)
+        return Budget(cpu_s=WALL_S) if "cpu_s" in budgets else Budget()
 
     @property
     def is_timed(self) -> bool:
         """Whether its runs end by the clock, so that no two of them need to be alike."""
-        return self.ordinary.wall_s is not None
+        return self.ordinary.wall_s is not None or self.ordinary.cpu_s is not None
 
     @cached_property
     def warm_up(self) -> WarmUp:
@@ -275,11 +279,11 @@ def _run(
 def timed(plan: Callable[[], Any], recorder: Recorder) -> Run:
     """Plan within the clock; whatever is raised passes."""
     recorder.start_clock()
-    started = recorder.started
+    started, cpu = recorder.started, time.process_time()
     returned = plan()
-    wall_s = time.perf_counter() - started
+    wall_s, cpu_s = time.perf_counter() - started, time.process_time() - cpu
     restarted = recorder.started != started
-    return Run(recorder, None, returned, None, wall_s, restarted=restarted)
+    return Run(recorder, None, returned, None, wall_s, cpu_s, restarted=restarted)
 
 
 def failed(recorder: Recorder) -> Run:
@@ -295,8 +299,9 @@ def form_of(returned: Any) -> str | None:
     if returned.status not in CLAIMABLE:
         return f"the status of the plan is {returned.status!r}"
     try:
-        for name in ("generations", "generation_of_best", "checks"):
+        for name in ("generations", "generation_of_best"):
             as_count(getattr(returned, name), f"{name} of the plan")
+        as_checks(returned)
     except ContractError as error:
         return str(error)
     if not isinstance(returned.claimed_cost, int | float | np.number | None):
@@ -318,8 +323,13 @@ def form_of(returned: Any) -> str | None:
 
 def times(budget: Budget, factor: int) -> Budget:
     """So many times a budget."""
-    limits = {name: getattr(budget, name) for name in ("wall_s", "generations", "checks")}
-    return Budget(**{name: factor * limit for name, limit in limits.items() if limit is not None})
+    return Budget(**{name: factor * limit for name, limit in _limits(budget).items()})
+
+
+def _limits(budget: Budget) -> dict[str, Any]:
+    """The limits that a budget sets, by name."""
+    limits = {field.name: getattr(budget, field.name) for field in fields(budget)}
+    return {name: limit for name, limit in limits.items() if limit is not None}
 
 
 def optimum(scene: SmallScene) -> float:
@@ -330,8 +340,7 @@ def optimum(scene: SmallScene) -> float:
 
 def run_in_words(scene: SmallScene, seed: int, budget: Budget) -> str:
     """What was run, for findings; the budget as an author would write it."""
-    parts = {name: getattr(budget, name) for name in ("wall_s", "generations", "checks")}
-    inner = ", ".join(f"{name}={value}" for name, value in parts.items() if value is not None)
+    inner = ", ".join(f"{name}={value}" for name, value in _limits(budget).items())
     return f"on '{scene.name}' with seed {seed} and Budget({inner})"
 
 

@@ -43,7 +43,7 @@ from suite.exact import path_length, shortest_path
 from suite.geometry.kernels import first_collision
 from suite.planner import Budget, Plan, PlanStatus, Recorder, Replanner
 from suite.referee import judge
-from suite.reported import as_count
+from suite.reported import as_checks, as_count
 from suite.scene import Query, Scene
 
 ENCLOSED = "enclosed"
@@ -63,7 +63,7 @@ class Replan:
     cost : its length, metres.
     optimum : length of the shortest path in what was known, metres; None if there is none.
     latency_s : wall time of the call, seconds; None if nobody was asked.
-    generations, checks, details : what the plan says of them.
+    generations, checks, computed_checks, details : what the plan says of them.
     """
 
     time: float
@@ -77,6 +77,7 @@ class Replan:
     latency_s: float | None = None
     generations: int | None = None
     checks: int | None = None
+    computed_checks: int | None = None
     details: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -345,6 +346,7 @@ def _judged(
         latency_s=latency_s,
         generations=plan.generations,
         checks=plan.checks,
+        computed_checks=plan.computed_checks,
         details={str(name): float(value) for name, value in plan.details.items()},
     )
 
@@ -355,10 +357,11 @@ def _formed(plan: Any, reason: str | None) -> tuple[Plan, str | None]:
         return Plan(PlanStatus.ERROR), f"returned {type(plan).__name__}, not a Plan."
     try:
         generations = as_count(plan.generations, "generations of the plan")
-        checks = as_count(plan.checks, "checks of the plan")
+        checks, computed = as_checks(plan)
     except ContractError as error:
         return Plan(PlanStatus.ERROR), str(error)
-    return replace(plan, generations=generations, checks=checks), reason
+    plan = replace(plan, generations=generations, checks=checks, computed_checks=computed)
+    return plan, reason
 
 
 def _joining(place: NDArray[np.float64], pending: _Pending) -> list[NDArray[np.float64]]:

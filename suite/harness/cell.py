@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from suite.errors import ContractError, PluginError, SceneError
 from suite.geometry.tolerances import COST_CLAIM_RELATIVE
+from suite.harness.contention import waited
 from suite.harness.machine import host_name, load_average
 from suite.harness.prepared import (
     build_planner,
@@ -22,17 +23,13 @@ from suite.harness.prepared import (
 from suite.harness.simulated import simulated
 from suite.planner import Plan, PlanStatus, Recorder, refusal
 from suite.record import Cell, RunRecord
-from suite.reported import as_count, improvements, trace
+from suite.reported import as_checks, as_count, improvements, trace
 from suite.scene import Query, scene_fingerprint
 
 TRACEBACK_LINES = 12
 """Enough for the exception and the frames of the planner that raised it."""
 
 CLAIMABLE = (PlanStatus.SOLVED, PlanStatus.INFEASIBLE, PlanStatus.EXHAUSTED)
-
-CONTENTION_FACTOR = 1.1
-CONTENTION_FLOOR_S = 0.002
-"""Below this, the resolution of the CPU clock decides, not the load of the machine."""
 
 
 def run_cell(
@@ -109,7 +106,7 @@ def _run(
         blank,
         wall_s=wall_s,
         cpu_s=cpu_s,
-        contended=wall_s > CONTENTION_FACTOR * cpu_s + CONTENTION_FLOOR_S,
+        contended=waited(wall_s, cpu_s),
         optimum=exact_optimum(cell.scene_source, cell.query),
     )
     try:
@@ -138,6 +135,7 @@ def _checked(plan: Any) -> Plan:
 def _with_plan(record: RunRecord, plan: Plan) -> RunRecord:
     """The record with what the planner says of its run; nothing of it is judged yet."""
     best = record.improvements[-1] if record.improvements else None
+    checks, computed_checks = as_checks(plan)
     return replace(
         record,
         status=PlanStatus(plan.status),
@@ -149,7 +147,8 @@ def _with_plan(record: RunRecord, plan: Plan) -> RunRecord:
             else plan.generation_of_best,
             "generation_of_best of the plan",
         ),
-        checks=as_count(plan.checks, "checks of the plan"),
+        checks=checks,
+        computed_checks=computed_checks,
         details={str(k): float(v) for k, v in plan.details.items()},
         path=_as_path(plan.path),
         # A planner that reports nothing found its best when it ended.

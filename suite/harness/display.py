@@ -27,6 +27,8 @@ MOST_PLANNERS = 30
 
 INDENT = "  "
 
+REPEATS = "contended runs again"
+
 
 class Display:
     """Shows each :class:`Progress` that it is called with. A context manager.
@@ -106,6 +108,10 @@ class Display:
             for name, tally in progress.planners.items():
                 self._show_bar(bars, INDENT + name, tally)
 
+        if progress.repeats_wanted:
+            repeats = Tally(progress.repeats_wanted, progress.repeats_done)
+            self._show_bar(bars, f"{INDENT}{REPEATS}", repeats)
+
     def _show_bar(
         self, bars: Bars, name: str, tally: Tally, rate: str = "", running: str = ""
     ) -> None:
@@ -132,6 +138,9 @@ class Display:
         left = progress.wanted - progress.done
         parts = [f"{progress.done} of {progress.wanted} done", f"{left} left"]
         parts += [self._rate(progress)] if self._rate(progress) else []
+        if progress.repeats_wanted:
+            repeats = f"{progress.repeats_done} of {progress.repeats_wanted}"
+            parts.append(f"{REPEATS}: {repeats}")
         if progress.failed:
             names = ", ".join(f"{k} {v.failed}" for k, v in progress.planners.items() if v.failed)
             parts.append(f"{progress.failed} failed{f' ({names})' if names else ''}")

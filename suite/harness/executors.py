@@ -24,6 +24,7 @@ from suite.harness.cores import honest_jobs
 from suite.harness.isolate import kill_running, run_isolated
 from suite.harness.machine import package_version
 from suite.harness.matrix import Limits
+from suite.harness.patience import Patience
 from suite.harness.warm import Warmth
 from suite.harness.worker import DISTRIBUTION, Session, describe, end_session, run_for
 from suite.planner import PlanStatus
@@ -184,11 +185,13 @@ class Crew:
     executor : where each is waited for.
     jobs : how many at a time; None to ask the cluster again and again, for it may grow.
     session : of runs whose workers are not this process; None for threads of this process.
+    patience : with this machine, if it is busy. Workers elsewhere have none.
     """
 
     executor: Executor
     jobs: int | None
     session: Session | None
+    patience: Patience
 
     def size(self) -> int:
         """Runs at a time."""
@@ -199,7 +202,7 @@ class Crew:
     def start(self, cell: Cell, limits: Limits, warmth: Warmth) -> Future[RunRecord]:
         """Have a cell run."""
         if self.session is None:
-            return self.executor.submit(run_isolated, cell, limits, warmth)
+            return self.executor.submit(_run_patiently, self.patience, cell, limits, warmth)
         return self.executor.submit(run_for, self.session, cell, limits, warmth)
 
     def provenance(self) -> dict[str, Any]:
@@ -217,6 +220,7 @@ class Crew:
         Their records are dropped: the next session runs them again.
         """
         started = [future for future in futures if not future.cancel()]
+        self.patience.give_up()
         if self.session is not None and isinstance(self.executor, DaskExecutor):
             try:
                 return self.executor.end(self.session)
@@ -232,7 +236,9 @@ class Crew:
 
 
 @contextmanager
-def crew(given: Executor | None, jobs: int | None) -> Iterator[Crew]:
+def crew(
+    given: Executor | None, jobs: int | None, patience: Patience | None = None
+) -> Iterator[Crew]:
     """Those who run a matrix: a given executor, or threads of this process while they are needed.
 
     Parameters
@@ -240,13 +246,21 @@ def crew(given: Executor | None, jobs: int | None) -> Iterator[Crew]:
     given : Executor, optional
     jobs : int, optional
         Runs at a time; default: what leaves their timing honest.
+    patience : Patience, optional
+        With this machine; default: none.
     """
+    patience = patience or Patience(0.0)
     if given is not None:
-        yield Crew(given, jobs, new_session())
+        yield Crew(given, jobs, new_session(), patience)
         return
     jobs = jobs or honest_jobs()
     with ThreadPoolExecutor(jobs, thread_name_prefix="run") as own:
-        yield Crew(own, jobs, None)
+        yield Crew(own, jobs, None, patience)
+
+
+def _run_patiently(patience: Patience, cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
+    with patience.own_core(wanted=patience.for_all or cell.load_counts):
+        return run_isolated(cell, limits, warmth)
 
 
 def record_of(future: "Future[RunRecord]", cell: Cell) -> RunRecord:

@@ -145,7 +145,9 @@ def _part(variant: str, cells: Sequence[Cell], known: Mapping[tuple[str, str], f
 
 def _budget(cell: Cell) -> float | None:
     """What a run may take; nobody knows how often a simulated one plans."""
-    return cell.budget.wall_s if cell.world is None else None
+    if cell.world is not None:
+        return None
+    return cell.budget.cpu_s if cell.budget.wall_s is None else cell.budget.wall_s
 
 
 def duration(seconds: float) -> str:

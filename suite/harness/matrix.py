@@ -16,9 +16,15 @@ A TOML file::
     name = "kbga-small"                      # of the variant; default: the planner's own
     planner = "kbga"
     settings = {population_size = 20}        # what is left out keeps its default
-    budget = {generations = 200}             # wall_s, generations, checks; none: its own stop
+    budget = {generations = 200}             # fields of Budget; none: its own stop
 
 Every query of every scene is run with every variant and every seed.
+
+A scene may be modified, as in ``zigzag@turn=17`` (see :mod:`suite.scenes.modifiers`), and a range
+of twins stands for as many scenes. With a table in place of its name, a scene has seeds of its own,
+so that several twins need not make the matrix as many times as large::
+
+    scenes = ["zigzag", { scene = "zigzag@twin=1..10", seeds = 5 }]
 
 A matrix of simulated runs names worlds. Then every scene is driven through in each of its worlds,
 and the budget is that of each single plan::
@@ -57,6 +63,7 @@ from suite.record import Cell, World
 from suite.scene import Scene, scene_fingerprint
 from suite.scene_file import SUFFIXES
 from suite.scenes.catalogue import has_scene, load_scene
+from suite.scenes.modifiers import MARK, expand_twins, split_modifiers
 
 FOLDER = Path(__file__).parent / "matrices"
 PLANNER = "the name of a planner (see `kbga-bench list planners`)"
@@ -72,7 +79,9 @@ class Limits:
     """When the harness ends a run that does not end by itself.
 
     factor, grace_s : ``plan`` may take ``factor`` times its wall budget, and ``grace_s`` more.
-    wall_s : what ``plan`` may take if it has no wall budget, seconds.
+    cpu_stretch : with a budget of CPU time alone it may take so many times that of wall time, and
+        ``grace_s`` more: on a busy machine a run gets a small share of a core.
+    wall_s : what ``plan`` may take if it has no budget of time, seconds.
     warm_up_s : what loading and ``warm_up`` may take, compilation included, seconds.
     memory_mb : what the run with all its processes may hold at any time, resident, 10^6 bytes. The
         default is what computers have for each core at the least, and several times what a
@@ -81,6 +90,7 @@ class Limits:
 
     factor: float = 1.5
     grace_s: float = 10.0
+    cpu_stretch: float = 20.0
     wall_s: float = 300.0
     warm_up_s: float = 300.0
     memory_mb: float = 2000.0
@@ -98,9 +108,11 @@ class Limits:
 
     def plan_s(self, budget: Budget) -> float:
         """Seconds of wall time after which a run with this budget is killed."""
-        if budget.wall_s is None:
-            return self.wall_s
-        return self.factor * budget.wall_s + self.grace_s
+        if budget.wall_s is not None:
+            return self.factor * budget.wall_s + self.grace_s
+        if budget.cpu_s is not None:
+            return self.cpu_stretch * budget.cpu_s + self.grace_s
+        return self.wall_s
 
     def run_s(self, cell: Cell) -> float:
         """Seconds of wall time after which a run is killed; a simulated one plans many times."""
@@ -129,6 +141,8 @@ class Matrix:
     """What is to be run. Made by :func:`load_matrix`, which has checked all of it.
 
     sources : what :func:`suite.scenes.catalogue.load_scene` takes, one for each of ``scenes``.
+    seeds : of the scenes that have none of their own.
+    scene_seeds : of each of ``scenes``.
     worlds : (name, settings) of the worlds of each scene; none if its runs are not simulated.
     """
 
@@ -138,6 +152,7 @@ class Matrix:
     sources: tuple[str, ...]
     variants: tuple[Variant, ...]
     seeds: tuple[int, ...]
+    scene_seeds: tuple[tuple[int, ...], ...]
     limits: Limits
     worlds: tuple[tuple[tuple[str, Mapping[str, Any]], ...], ...]
 
@@ -147,17 +162,19 @@ class Matrix:
         Parameters
         ----------
         quick : bool
-            Only the first two seeds.
+            Only the first two seeds of each scene.
         """
-        wanted = (
-            (scene, source, query, world, variant, seed)
-            for scene, source, worlds in zip(self.scenes, self.sources, self.worlds, strict=True)
+        wanted = [
+            (scene, source, query, world, variant, seed, number < QUICK_SEEDS)
+            for scene, source, worlds, seeds in zip(
+                self.scenes, self.sources, self.worlds, self.scene_seeds, strict=True
+            )
             for query in scene.queries
             for world in worlds or (None,)
             for variant in self.variants
-            for seed in self.seeds
-        )
-        cells = [
+            for number, seed in enumerate(seeds)
+        ]
+        return [
             Cell(
                 scene=scene.name,
                 scene_source=source,
@@ -173,10 +190,9 @@ class Matrix:
                 world=None if world is None else World(*world, cold=variant.cold),
                 position=position,
             )
-            for position, (scene, source, query, world, variant, seed) in enumerate(wanted)
+            for position, (scene, source, query, world, variant, seed, first) in enumerate(wanted)
+            if first or not quick
         ]
-        first = self.seeds[:QUICK_SEEDS]
-        return [cell for cell in cells if cell.seed in first] if quick else cells
 
 
 def matrix_names() -> list[str]:
@@ -228,7 +244,9 @@ def load_matrix(name_or_path: str | Path) -> Matrix:
     path = matrix_file(name_or_path)
     reader = Reader(path.name, read_toml(path))
     reader.allow("name", "description", "scenes", "seeds", "world", "planner", "limits")
-    scenes, sources = _scenes(reader, path.parent)
+    seeds = _seeds(reader)
+    named = _named_scenes(reader, seeds)
+    scenes, sources = _scenes(reader, [name for name, _ in named], path.parent)
     worlds = _worlds(reader, scenes)
     return Matrix(
         name=reader.text("name", path.stem),
@@ -236,14 +254,37 @@ def load_matrix(name_or_path: str | Path) -> Matrix:
         scenes=scenes,
         sources=sources,
         variants=_variants(reader, simulated=any(worlds)),
-        seeds=_seeds(reader),
+        seeds=seeds,
+        scene_seeds=tuple(own for _, own in named),
         limits=_built(Limits, reader.table("limits")),
         worlds=worlds,
     )
 
 
-def _scenes(reader: Reader, folder: Path) -> tuple[tuple[Scene, ...], tuple[str, ...]]:
-    entries = reader.texts("scenes")
+def _named_scenes(reader: Reader, seeds: tuple[int, ...]) -> list[tuple[str, tuple[int, ...]]]:
+    """The name or file of each scene as it is written, twins one by one, and its seeds."""
+    how = "give a list of names, files, or tables { scene = ..., seeds = ... }"
+    entries = reader.take("scenes", how)
+    good = isinstance(entries, list) and all(isinstance(entry, str | dict) for entry in entries)
+    if not good or not entries:
+        raise reader.error(f"scenes is {entries!r}. {how.capitalize()}, at least one.")
+    named = []
+    for number, entry in enumerate(entries, 1):
+        table = Reader(reader.file, {"scene": entry} if isinstance(entry, str) else entry)
+        table = table.renamed(f"scene {number}")
+        table.allow("scene", "seeds")
+        name = table.text("scene", what="the name or the file of a scene")
+        own = _seeds(table) if "seeds" in table.values else seeds
+        try:
+            named += [(twin, own) for twin in expand_twins(name)]
+        except SceneError as error:
+            raise reader.error(f"scenes: {error}") from error
+    return named
+
+
+def _scenes(
+    reader: Reader, entries: Sequence[str], folder: Path
+) -> tuple[tuple[Scene, ...], tuple[str, ...]]:
     sources = [_source(entry, folder) for entry in entries]
     scenes = []
     for entry, source in zip(entries, sources, strict=True):
@@ -258,10 +299,15 @@ def _scenes(reader: Reader, folder: Path) -> tuple[tuple[Scene, ...], tuple[str,
 def _source(entry: str, folder: Path) -> str:
     if has_scene(entry):
         return entry
-    path = folder / entry
-    is_path = path.exists() or Path(entry).suffix.lower() in SUFFIXES or len(Path(entry).parts) > 1
+    if (folder / entry).exists():
+        return str((folder / entry).resolve())
+    base, modifiers = split_modifiers(entry)
+    path = folder / base
+    is_path = path.exists() or path.suffix.lower() in SUFFIXES or len(Path(base).parts) > 1
     # A word that is neither goes to the catalogue, which says what it has.
-    return str(path.resolve()) if is_path else entry
+    if not is_path:
+        return entry
+    return f"{path.resolve()}{MARK}{modifiers}" if modifiers else str(path.resolve())
 
 
 def _worlds(

@@ -17,6 +17,7 @@ from suite.harness.executors import Crew, crew, record_of
 from suite.harness.isolate import start_server
 from suite.harness.machine import provenance
 from suite.harness.matrix import Limits, Matrix
+from suite.harness.patience import Patience
 from suite.harness.warm import Warmth
 from suite.planner import PlanStatus
 from suite.record import Cell, RunRecord, canonical_json
@@ -83,6 +84,10 @@ class Progress:
     running : labels of the runs that were handed out and are not back.
     last : the row that came last.
     left : runs that still go on elsewhere after an interruption; their rows are dropped.
+    contended : rows of the matrix whose runs had no core for themselves.
+    repeated : rows that were run again for that reason, or are about to be.
+    repeats_wanted, repeats_done : runs that this takes, as far as it is known, and has taken.
+    waited_s : seconds that runs waited for a free core.
     planners : by the name of each variant, all its runs.
     """
 
@@ -93,13 +98,30 @@ class Progress:
     running: list[str] = field(default_factory=list)
     last: RunRecord | None = None
     left: int = 0
+    contended: int = 0
+    repeated: int = 0
+    repeats_wanted: int = 0
+    repeats_done: int = 0
+    waited_s: float = 0.0
     planners: dict[str, Tally] = field(default_factory=dict)
 
     def summary(self) -> str:
         """One line that says how the matrix ended."""
         ran = self.done - self.found
         text = f"{self.done} of {self.wanted} runs are in the store: {self.found} were there, "
-        return f"{text}{ran} ran now, {self.failed} of these failed."
+        return f"{text}{ran} ran now, {self.failed} of these failed.{self._of_the_clock()}"
+
+    def _of_the_clock(self) -> str:
+        """What a busy machine did to the rows, if it did anything."""
+        waited = f" {self.waited_s:.0f} s went to waiting for a core." if self.waited_s > 1 else ""
+        if self.repeated:
+            verb = "is" if self.contended == 1 else "are"
+            still = f"{self.contended or 'none'} still {verb}"
+            return f"{waited} {_rows(self.repeated)} had no core and ran again; {still} contended."
+        if self.contended:
+            rows = _rows(self.contended)
+            return f"{waited} {rows} had no core to run on: see `run --patience`."
+        return waited
 
 
 def run_matrix(
@@ -109,6 +131,7 @@ def run_matrix(
     jobs: int | None = None,
     quick: bool = False,
     which: Which = Which.MISSING,
+    patience_s: float = 0.0,
     executor: Executor | None = None,
     on_progress: Callable[[Progress], None] = lambda _: None,
 ) -> Progress:
@@ -126,6 +149,9 @@ def run_matrix(
         Only the first two seeds.
     which : Which
         Which rows that are there are run again.
+    patience_s : float
+        So many seconds in all may runs that wall time ends wait for a free core. Rows that are
+        contended all the same are for :func:`suite.harness.repeat.repeat_contended`.
     executor : Executor, optional
         Where the runs are waited for, each in a process that its worker starts; default: threads
         of this process. It is left open.
@@ -151,28 +177,60 @@ def run_matrix(
     progress = _progress(cells, missing, there)
     on_progress(progress)
     store.want(matrix.name, cells)
-    if not missing:
-        return progress
-    warmth = warmth_for(missing, matrix.limits)
-    if executor is None:
-        start_server(warmth)
-    distributions = {(cell.distribution, cell.version) for cell in missing}
-    with crew(executor, jobs) as own:
-        place = {"pid": os.getpid(), **own.provenance()}
-        store.begin_session(provenance(matrix.name, distributions) | place)
-        runs = _run_each(missing, matrix.limits, warmth, own, progress)
-        try:
-            with closing(runs):
-                for record in runs:
-                    if record is not None:
-                        store.add(record, replace=record.cell.key in there)
-                        _count(record, progress)
-                    on_progress(progress)
-        except KeyboardInterrupt as interrupt:
-            if progress.left:
-                interrupt.add_note(_left_in_words(progress.left))
-            raise
+    if missing:
+        warmth = warmth_for(missing, matrix.limits)
+        if executor is None:
+            start_server(warmth)
+        with crew(executor, jobs, Patience(patience_s)) as own:
+            begin_session(matrix, missing, store, own)
+
+            def keep(record: RunRecord) -> None:
+                store.add(record, replace=record.cell.key in there)
+                _count(record, progress)
+
+            runs = run_each(missing, matrix.limits, warmth, own, progress)
+            follow(runs, keep, progress, on_progress)
+            progress.waited_s = own.patience.waited_s
+    progress.contended = len(contended_cells(cells, store))
     return progress
+
+
+def begin_session(matrix: Matrix, cells: Sequence[Cell], store: Store, crew: Crew) -> None:
+    """Say in a store where the rows of these cells come from."""
+    distributions = {(cell.distribution, cell.version) for cell in cells}
+    place = {"pid": os.getpid(), **crew.provenance()}
+    store.begin_session(provenance(matrix.name, distributions) | place)
+
+
+def follow(
+    runs: Generator[RunRecord | None, None, None],
+    keep: Callable[[RunRecord], None],
+    progress: Progress,
+    on_progress: Callable[[Progress], None],
+) -> None:
+    """Keep each record as it comes; of each, and of each start, somebody is told.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        After Ctrl-C, when the runs in flight are killed; a note says if some could not be.
+    """
+    try:
+        with closing(runs):
+            for record in runs:
+                if record is not None:
+                    keep(record)
+                on_progress(progress)
+    except KeyboardInterrupt as interrupt:
+        if progress.left:
+            interrupt.add_note(_left_in_words(progress.left))
+        raise
+
+
+def contended_cells(cells: Sequence[Cell], store: Store) -> list[Cell]:
+    """Those whose rows say that the run had no core for itself, in the order of starting."""
+    contended = store.contended()
+    return interleaved([cell for cell in cells if cell.key in contended])
 
 
 def to_run(cells: Sequence[Cell], there: Mapping[str, str], which: Which) -> list[Cell]:
@@ -223,6 +281,10 @@ def warmth_for(cells: Iterable[Cell], limits: Limits) -> Warmth:
     )
 
 
+def _rows(count: int) -> str:
+    return "1 row" if count == 1 else f"{count} rows"
+
+
 def _left_in_words(left: int) -> str:
     runs = "1 run goes" if left == 1 else f"{left} runs go"
     return f"{runs} on elsewhere, to the end or the limit; nothing of that is kept."
@@ -235,8 +297,8 @@ def _count(record: RunRecord, progress: Progress) -> None:
     progress.planners[record.cell.variant].count(record.status)
 
 
-def _run_each(
-    cells: Sequence[Cell],
+def run_each(
+    cells: Iterable[Cell],
     limits: Limits,
     warmth: Warmth,
     crew: Crew,

@@ -1,6 +1,7 @@
 """One simulated run, in this process: a planner that plans again and again as its robot drives."""
 
 import json
+import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -11,8 +12,9 @@ import numpy as np
 
 from suite.dynamic.plain import as_data, settings_from_data
 from suite.dynamic.settings import Charge
-from suite.dynamic.simulate import Simulation, simulate
+from suite.dynamic.simulate import Replan, Simulation, simulate
 from suite.exact import shortest_path
+from suite.harness.contention import waited
 from suite.harness.prepared import prepared_scene
 from suite.planner import Plan, PlanAfresh, Planner, PlanStatus, Replanner
 from suite.record import RunRecord, World, canonical_json
@@ -46,7 +48,10 @@ def simulated(blank: RunRecord, planner: Planner, rng: np.random.Generator) -> R
     scene = prepared_scene(cell.scene_source)
     replanner = PlanAfresh(planner, rng) if cell.world.cold else planner.replanner(rng)
     settings = settings_from_data(cell.world.settings)
+    started, cpu = time.perf_counter(), time.process_time()
     done = simulate(scene, scene.query(cell.query), replanner, settings, cell.budget)
+    # The world is computed in the same process and never sleeps: who waited there waited anywhere.
+    contended = waited(time.perf_counter() - started, time.process_time() - cpu)
     status, reason = _verdict(done)
     optimum = exact_length(cell.scene_source, cell.query, cell.world)
     cost = done.trajectory.length if status is PlanStatus.SOLVED else None
@@ -59,6 +64,8 @@ def simulated(blank: RunRecord, planner: Planner, rng: np.random.Generator) -> R
         gap=cost / optimum - 1.0 if cost is not None and optimum else None,
         generations=_total(r.generations for r in done.replans),
         checks=_total(r.checks for r in done.replans),
+        computed_checks=_computed(done.replans),
+        contended=contended,
         wall_s=_total(r.latency_s for r in done.replans),
         details=_medians([r.details for r in done.replans]),
         path=done.trajectory.xy,
@@ -106,6 +113,14 @@ def _total(values: Iterable[Any]) -> Any:
     """The sum of what is known; None if nothing is."""
     known = [value for value in values if value is not None]
     return sum(known) if known else None
+
+
+def _computed(replans: Sequence[Replan]) -> int | None:
+    """Checks that were computed in all; None if no plan answered any from memory."""
+    if all(replan.computed_checks is None for replan in replans):
+        return None
+    counts = (r.checks if r.computed_checks is None else r.computed_checks for r in replans)
+    return sum(count or 0 for count in counts)
 
 
 def _medians(details: Sequence[Mapping[str, float]]) -> dict[str, float]:

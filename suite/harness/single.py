@@ -121,8 +121,10 @@ def as_data(record: RunRecord) -> dict[str, Any]:
         "generations": record.generations,
         "generation_of_best": record.generation_of_best,
         "collision_checks": record.checks,
+        "computed_checks": record.computed_checks,
         "wall_s": record.wall_s,
         "cpu_s": record.cpu_s,
+        "contended": record.contended,
         "time_to_best_s": record.time_to_best_s,
         "events": [[event.wall_s, event.cost] for event in record.improvements],
         "path": None if record.path is None else record.path.tolist(),
@@ -174,11 +176,16 @@ def as_text(record: RunRecord) -> str:
         found = "" if best is None else f", the best found in number {best}"
         lines.append(f"  generations  {record.generations}{found}")
     if record.checks is not None:
-        lines.append(f"  checks       {record.checks}")
+        computed = record.computed_checks
+        memory = "" if computed is None else f", {computed} of them computed, the rest from memory"
+        lines.append(f"  checks       {record.checks}{memory}")
     if record.wall_s is not None:
         best_s = record.time_to_best_s
         found = "" if best_s is None else f", the best found after {1e3 * best_s:.2f} ms"
         lines.append(f"  time         {1e3 * record.wall_s:.2f} ms{found}")
+    if record.cpu_s is not None:
+        waited = "; it waited for the processor" if record.contended else ""
+        lines.append(f"  CPU time     {1e3 * record.cpu_s:.2f} ms{waited}")
     if record.path is not None:
         waypoints = " ".join(f"({x:g}, {y:g})" for x, y in record.path)
         lines.append(f"  path         {waypoints}")

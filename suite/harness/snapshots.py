@@ -138,7 +138,7 @@ def _wanted(matrix: Matrix) -> list[Cell]:
 
 def _again(cell: Cell, row: Mapping[Any, Any], matrix: Matrix) -> RunRecord:
     last, best = int(row["generations"]), row["generation_of_best"]
-    if cell.budget.wall_s is not None:
+    if cell.time_counts:
         cell = replace(cell, budget=Budget(generations=last))
     shown = chosen_generations(last, None if best is None else int(best))
     return run_isolated(cell, matrix.limits, warmth_for([cell], matrix.limits), snapshots_of=shown)

@@ -31,7 +31,8 @@ def status(store: Path) -> dict[str, Any]:
         ``other`` rows are of scenes and settings that no matrix wants any more. ``by_status`` and
         ``planners``, in the order of the matrix, count wanted runs. ``failures`` are the wanted
         rows that ended in one of FAILURES (all of them, if no matrix wants any): key, name, status
-        and reason. ``writer`` says who has it open for writing, or is null.
+        and reason. ``contended`` counts the rows, of these, whose runs had no core for themselves.
+        ``writer`` says who has it open for writing, or is null.
 
     Raises
     ------
@@ -49,6 +50,7 @@ def status(store: Path) -> dict[str, Any]:
         "missing": int((~done).sum()),
         "other": int((~runs["key"].isin(wanted["key"])).sum()),
         "conflicts": len(read_conflicts(store)),
+        "contended": int(_of_matrices(runs, wanted)["contended"].fillna(value=False).sum()),
         "by_status": _counts(wanted["status"]),
         "planners": {
             str(variant): {
@@ -88,6 +90,11 @@ def as_text(found: dict[str, Any]) -> str:
         good = f"{tally['succeeded']} succeeded"
         lines.append(f"  {name}: {tally['done']} of {tally['wanted']}, {good}{failed}")
     lines += _failures_as_text(found["failures"])
+    if found["contended"]:
+        lines.append(
+            f"  {found['contended']} rows had no core for themselves; the same `kbga-bench run` "
+            "tries them again"
+        )
     if found["other"]:
         lines.append(
             f"  {found['other']} more rows, of scenes or settings that no matrix wants now"
@@ -100,9 +107,8 @@ def as_text(found: dict[str, Any]) -> str:
 
 
 def _failures(runs: pd.DataFrame, wanted: pd.DataFrame) -> list[dict[str, Any]]:
-    failed = runs[runs["status"].isin(FAILURES)]
-    if len(wanted):
-        failed = failed[failed["key"].isin(wanted["key"])]
+    ours = _of_matrices(runs, wanted)
+    failed = ours[ours["status"].isin(FAILURES)]
     return [
         {
             "key": row["key"],
@@ -112,6 +118,11 @@ def _failures(runs: pd.DataFrame, wanted: pd.DataFrame) -> list[dict[str, Any]]:
         }
         for row in failed.to_dict("records")
     ]
+
+
+def _of_matrices(runs: pd.DataFrame, wanted: pd.DataFrame) -> pd.DataFrame:
+    """The rows that a matrix wants; all, if none wants any."""
+    return runs[runs["key"].isin(wanted["key"])] if len(wanted) else runs
 
 
 def _failures_as_text(failures: Sequence[Mapping[str, Any]]) -> list[str]:

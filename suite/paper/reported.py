@@ -17,6 +17,9 @@ PLAIN_GA = "plain-ga"
 WITHOUT_CROSSOVER_AND_MUTATION = "kbga-without-crossover-and-mutation"
 """The three algorithms of the paper, under the names of our variants that answer them."""
 
+KBGA_PLUS = "kbga-plus"
+"""Ours, which the paper says nothing of: it is shown beside, and never gets a verdict."""
+
 UNITS = {"cost": "m", "generations": "", "time_s": "s", "reaction_s": "s", "success": ""}
 """Quantities that the paper reports, and their units here."""
 
@@ -29,8 +32,8 @@ class Reported:
     scene : the environment, under our name; None for parameters.
     planner : the algorithm, under the name of our variant.
     quantity : cost, generations, time_s, reaction_s, success, or the name of a setting.
-    statistic : mean, sd (over ``runs`` runs), single (one run), initial (best of the first
-        population), or setting.
+    statistic : mean, sd (over ``runs`` runs), single (one run), best (the best one of ``runs``),
+        initial (best of the first population), or setting.
     value : float
     unit : of the value, if it has one.
     runs : int, or None if the paper does not say.
@@ -67,6 +70,18 @@ def reported() -> tuple[Reported, ...]:
 def find(**wanted: Any) -> list[Reported]:
     """The figures whose fields have these values."""
     return [r for r in reported() if all(getattr(r, k) == v for k, v in wanted.items())]
+
+
+def best_reported(scene: str | None) -> float | None:
+    """The lowest cost that the paper reports on a scene, metres: our drawing is calibrated to it.
+
+    Examples
+    --------
+    >>> best_reported("clustered"), best_reported("obstacles_20")
+    (160.5, None)
+    """
+    costs = [r.value for r in find(scene=scene, planner=KBGA, quantity="cost", statistic="single")]
+    return min(costs, default=None)
 
 
 def _figures(statement: Mapping[str, Any]) -> Iterator[Reported]:

@@ -10,6 +10,7 @@ import pandas as pd
 
 from suite.paper.reported import (
     KBGA,
+    KBGA_PLUS,
     PLAIN_GA,
     WITHOUT_CROSSOVER_AND_MUTATION,
     find,
@@ -32,6 +33,9 @@ OPERATORS = ("crossover", "mutation", "repair", "deletion", "improvement")
 NOTHING = "nothing"
 SPECIALISED = "repair, deletion, improvement"
 CLASSICAL = "crossover, mutation"
+
+WHOLE = (KBGA, KBGA_PLUS)
+"""Planners that have all operators, unless some are switched off: the paper's, and ours."""
 
 REPORTED = {NOTHING: KBGA, SPECIALISED: PLAIN_GA, CLASSICAL: WITHOUT_CROSSOVER_AND_MUTATION}
 """What the paper switched off, and the names under which its figures stand."""
@@ -57,7 +61,7 @@ def ablation(runs: pd.DataFrame) -> pd.DataFrame:
         Of :func:`suite.report.compared.compare`; its column ``value`` says what is off. Empty if
         no KBGA was run both whole and ablated.
     """
-    rows = _rows(runs)
+    rows = ablated(runs)
     if rows.empty:
         return rows
     return compare(
@@ -68,16 +72,28 @@ def ablation(runs: pd.DataFrame) -> pd.DataFrame:
     )
 
 
-def _rows(runs: pd.DataFrame) -> pd.DataFrame:
-    """The runs of families that were ablated, and of the plain GA; ``value`` says what is off."""
-    runs = runs[(runs["planner"] == KBGA) | (runs["variant"] == PLAIN_GA)]
+def ablated(runs: pd.DataFrame) -> pd.DataFrame:
+    """The runs of families that were ablated, and of the plain GA.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        As :func:`suite.store.read_runs` gives it.
+
+    Returns
+    -------
+    DataFrame
+        With ``family``, and ``value``, which says what is off; empty if none was run both whole
+        and ablated.
+    """
+    runs = runs[runs["planner"].isin(WHOLE) | (runs["variant"] == PLAIN_GA)]
     settings = settings_of(runs)
     rows = runs.assign(
         value=settings.map(_off),
         family=families(runs, settings, [_probability(name) for name in OPERATORS]),
         scene=places(runs),
     )
-    is_kbga = rows["planner"] == KBGA
+    is_kbga = rows["planner"].isin(WHOLE)
     # A run with another probability above 0 is tuned, not ablated: it is another study's.
     above = settings.map(_probabilities_above_0)
     whole = {
@@ -89,7 +105,7 @@ def _rows(runs: pd.DataFrame) -> pd.DataFrame:
         for kbga, name, chances in zip(is_kbga, rows["family"], above, strict=True)
     ]
     rows = rows[pd.Series(fits, index=rows.index, dtype=bool)]
-    is_kbga = rows["planner"] == KBGA
+    is_kbga = rows["planner"].isin(WHOLE)
     several = rows.groupby("family")["value"].transform("nunique") > 1
     return rows[several | ~is_kbga] if several.any() else rows.iloc[:0]
 
@@ -121,7 +137,7 @@ def paper_ablation(runs: pd.DataFrame) -> pd.DataFrame:
     DataFrame
         A row for each scene that the paper did this on, what is off, and variant of ours.
     """
-    rows = _rows(runs)
+    rows = ablated(runs)
     if rows.empty:
         return rows
     found = []

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from suite.report.clock import WALL, by_the_clock
 from suite.report.compared import places
 from suite.report.summary import feasible
 
@@ -97,6 +98,18 @@ def only(steps: Steps, wanted: NDArray[np.bool_]) -> Steps:
         steps.cost[kept],
         {clock: shown[kept] for clock, shown in steps.clocks.items()},
     )
+
+
+def on_clock(steps: Steps, clock: str) -> Steps:
+    """The runs that can be compared on a clock; see :mod:`suite.report.clock`.
+
+    Parameters
+    ----------
+    steps : Steps
+    clock : str
+        Of :data:`CLOCKS`.
+    """
+    return only(steps, by_the_clock(steps.runs)) if clock == WALL else steps
 
 
 def cost_at(steps: Steps, clock: str, value: float) -> Array:

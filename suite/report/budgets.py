@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from suite.report.anytime import Array, Steps, gap_at
+from suite.report.anytime import Array, Steps, gap_at, on_clock
+from suite.report.clock import joined, untimed_note
 from suite.report.compared import SIDE_BY_SIDE, at_a_glance
 from suite.report.table import Table
 from suite.report.targets import medians
@@ -40,6 +41,7 @@ def fixed_budget(steps: Steps) -> pd.DataFrame:
         A row for each scene with an optimum, planner and budget: runs, how many had a path, and
         the median gap over all of them, infinite where half or more had none.
     """
+    steps = on_clock(steps, "wall_s")
     with_optimum = ~np.isnan(steps.optimum)
     names = steps.runs.loc[with_optimum, ["place", "variant"]]
     frames = [_after(budget, _gap(steps, budget)[with_optimum], names) for budget in BUDGETS_S]
@@ -78,11 +80,12 @@ def budget_tables(steps: Steps) -> list[Table]:
     if frame.empty:
         return []
     title = "Paths found, and their gap, after a fixed wall time"
-    rows = Table("fixed-budget-rows", title, frame, NOTE, infinite="no path", detail=True)
+    told = joined(NOTE, untimed_note(steps.runs))
+    rows = Table("fixed-budget-rows", title, frame, told, infinite="no path", detail=True)
     if frame["scene"].nunique() > SIDE_BY_SIDE:
         return [rows]
     glanced = at_a_glance(_with_budget_names(frame), ["planner", "after"], _cell)
-    note = f"k of n: how many runs had a path. {NOTE}"
+    note = f"k of n: how many runs had a path. {told}"
     title = "Median gap (%) after a fixed wall time"
     return [Table("fixed-budget", title, glanced, note), rows]
 

@@ -21,7 +21,7 @@ RATIO_NOTE = "ratio: of the cpu time to that of {reference}."
 SIDE_BY_SIDE = 12
 """Scenes that a table has room for: of more, there are only the rows."""
 
-_BUDGET = ["budget_wall_s", "budget_generations", "budget_checks"]
+_BUDGET = ["budget_wall_s", "budget_generations", "budget_checks", "budget_cpu_s"]
 
 
 def settings_of(runs: pd.DataFrame, column: str = "settings") -> "pd.Series[Any]":

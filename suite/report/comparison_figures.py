@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator
 
-from suite.report.anytime import Array, Steps, final_gaps, groups_of
+from suite.report.anytime import Array, Steps, final_gaps, groups_of, on_clock
+from suite.report.clock import WALL, joined, untimed_note
 from suite.report.panels import (
     LEAST_GAP,
     PLANNERS_AT_MOST,
@@ -65,7 +66,11 @@ def comparison_figures(steps: Steps) -> dict[str, Figure]:
     planners = steps.runs["variant"].nunique()
     if planners > PLANNERS_AT_MOST or np.isnan(steps.optimum[steps.run]).all():
         return {}
-    return {"gap-boxes": plot_boxes(steps), "gap-time": plot_scatter(steps)}
+    figures = {"gap-boxes": plot_boxes(steps)}
+    timed = on_clock(steps, WALL)
+    if np.isfinite(timed.optimum[timed.run]).any():
+        figures["gap-time"] = plot_scatter(steps)
+    return figures
 
 
 def plot_boxes(steps: Steps) -> Figure:
@@ -131,14 +136,15 @@ def plot_scatter(steps: Steps) -> Figure:
     Parameters
     ----------
     steps : Steps
-        With an accepted path in a scene with an optimum.
+        With an accepted path in a scene with an optimum, of a run that had a core for itself.
     """
+    planners, left_out = numbered(steps.runs["variant"]), untimed_note(steps.runs)
+    steps = on_clock(steps, WALL)
     runs = steps.runs
     gap = 100.0 * final_gaps(steps)
     time = 1e3 * runs["time_to_best_s"].fillna(runs["wall_s"]).to_numpy()
     groups = groups_of(steps, ~np.isnan(steps.optimum))
     scenes = list(dict.fromkeys(scene for scene, _ in groups))
-    planners = numbered(steps.runs["variant"])
     panels = scene_panels(scenes)
     first = next(iter(panels.axes.values()))
     logarithmic_gaps(first, gap)
@@ -155,7 +161,8 @@ def plot_scatter(steps: Steps) -> Figure:
             _draw_runs(panels.axes[scene], planners[planner], time[rows], height)
     limit = _draw_limits(panels, runs, time)
     title(panels, "Time and gap of the runs", "wall time to the final path (ms)", len(scenes))
-    legend(panels.figure, planners, SCATTER_NOTE + limit, only_markers=True)
+    note = joined(SCATTER_NOTE + limit, left_out)
+    legend(panels.figure, planners, note, only_markers=True)
     return panels.figure
 
 

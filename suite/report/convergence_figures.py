@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from suite.report.anytime import Array, Steps, gap_at, groups_of, only
+from suite.report.clock import WALL, by_the_clock, joined, untimed_note
 from suite.report.panels import (
     LEAST_GAP,
     PANELS_AT_MOST,
@@ -60,7 +61,7 @@ def convergence_figures(steps: Steps) -> dict[str, Figure]:
     return {
         f"convergence-{name}": plot_convergence(steps, clock)
         for clock, (name, *_) in CLOCKS.items()
-        if np.isfinite(steps.clocks[clock][measured]).any()
+        if np.isfinite(steps.clocks[clock][measured]).any() and counted_groups(steps, clock)
     }
 
 
@@ -90,17 +91,16 @@ def plot_convergence(steps: Steps, clock: str) -> Figure:
     title(panels, f"How the gap falls over {name}", label, len(scenes))
     counting = {planner for _, planner in groups}
     named = {planner: i for planner, i in planners.items() if planner in counting}
-    legend(panels.figure, named, HOW_TO_READ + _silent(planners.keys() - counting, name))
+    left_out = untimed_note(steps.runs) if clock == WALL else ""
+    silent = _silent(planners.keys() - counting, name)
+    legend(panels.figure, named, joined(HOW_TO_READ + silent, left_out))
     return panels.figure
 
 
 def _silent(planners: Collection[str], clock: str) -> str:
-    """Who is not drawn, for it does not count."""
-    return (
-        f" Not drawn, without a count of {clock}: {', '.join(sorted(planners))}."
-        if planners
-        else ""
-    )
+    """Who is not drawn, for it does not count; by time, for no run had a core for itself."""
+    why = "contended" if clock == "time" else f"without a count of {clock}"
+    return f" Not drawn, {why}: {', '.join(sorted(planners))}." if planners else ""
 
 
 def counted_groups(steps: Steps, clock: str) -> dict[tuple[str, str], NDArray[np.int64]]:
@@ -113,6 +113,8 @@ def counted_groups(steps: Steps, clock: str) -> dict[tuple[str, str], NDArray[np
     silent = set(variants[steps.run[~counted]]) - set(variants[steps.run[counted]])
     wanted = ~np.isnan(steps.optimum) & ~np.isin(variants, list(silent))
     wanted[steps.run[~counted]] = False
+    if clock == WALL:
+        wanted &= by_the_clock(steps.runs)
     return groups_of(steps, wanted)
 
 

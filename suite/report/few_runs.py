@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from itertools import count
 
-from suite.report.statistics import LEVEL, smallest_p
+from suite.report.statistics import CONSTANT, LEVEL, smallest_p
 
 PAIR = tuple[int, int]
-"""Numbers of runs of the two sides of a comparison."""
+"""Numbers of runs of the two sides of a comparison; one of them may be a constant."""
 
 
 def too_few(sizes: Sequence[PAIR]) -> str:
@@ -31,11 +31,16 @@ def too_few(sizes: Sequence[PAIR]) -> str:
         return ""
     comparisons = f"{len(sizes)} comparison{'s' if len(sizes) != 1 else ''}"
     return (
-        f"Too few runs: with {clearest[0]} against {clearest[1]} and {comparisons}, the smallest p "
+        f"Too few runs: with {_side(clearest[0])} against {_side(clearest[1])} and {comparisons}, "
+        "the smallest p "
         f"that there can be is {least:.2g} after Holm's correction, so that no difference can be "
         f"shown at {100 * (1 - LEVEL):.0f} %, however large; {enough(len(sizes))} runs on each "
         "side would do for a large one."
     )
+
+
+def _side(runs: int) -> str:
+    return "a constant" if runs == CONSTANT else str(runs)
 
 
 def enough(comparisons: int) -> int:

@@ -17,6 +17,7 @@ _VERSION = [
     "budget_wall_s",
     "budget_generations",
     "budget_checks",
+    "budget_cpu_s",
 ]
 
 

@@ -50,6 +50,8 @@ COLUMNS: tuple[Column, ...] = (
     ("time to best REAL", lambda row: row.time_to_best_s),
     ("iterations INTEGER", lambda row: row.generations),
     ("collision checks INTEGER", lambda row: row.checks),
+    ("computed checks INTEGER", lambda row: row.computed_checks),
+    ("contended BOOLEAN", lambda row: row.contended),
     ("random seed INTEGER", lambda row: row.seed),
 )
 """Names that OMPL's tools know, where there is one, and ours."""

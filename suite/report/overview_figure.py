@@ -11,6 +11,7 @@ from matplotlib.colors import Colormap, LogNorm
 from matplotlib.figure import Figure
 
 from suite.report.anytime import Array, Steps
+from suite.report.clock import joined, untimed_note
 from suite.report.panels import LEAST_GAP, SMALL, legend, plain_number
 from suite.report.ranking import rankings, scene_scores
 
@@ -71,16 +72,18 @@ def overview_figures(steps: Steps) -> dict[str, Figure]:
     readable = 2 <= planners <= PLANNERS_AT_MOST and 2 <= scenes <= SCENES_AT_MOST
     if not readable or scores["gap median (%)"].isna().all():
         return {}
-    return {"overview": plot_overview(scores)}
+    return {"overview": plot_overview(scores, untimed_note(steps.runs))}
 
 
-def plot_overview(scores: pd.DataFrame) -> Figure:
+def plot_overview(scores: pd.DataFrame, left_out: str = "") -> Figure:
     """Draw the planners' gaps and times on all scenes as two maps of coloured numbers.
 
     Parameters
     ----------
     scores : DataFrame
         Of :func:`suite.report.ranking.scene_scores`, with a gap.
+    left_out : str
+        What times leave out, in a sentence.
     """
     order = rankings(scores)[0].mean.sort_values(kind="stable").index
     maps = _gaps(scores), _times(scores)
@@ -91,7 +94,7 @@ def plot_overview(scores: pd.DataFrame) -> Figure:
     for axes, drawn in zip(panels, maps, strict=True):
         _draw(axes, drawn, list(order))
     figure.suptitle("Planners and scenes: how near the optimum, and how soon", fontsize=11)
-    legend(figure, {}, HOW_TO_READ)
+    legend(figure, {}, joined(HOW_TO_READ, left_out))
     return figure
 
 

@@ -5,7 +5,7 @@ References
 Demsar (2006), Statistical comparisons of classifiers over multiple data sets, Figure 1.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from suite.report.anytime import Steps
 from suite.report.panels import legend
 from suite.report.ranking import Ranking, rankings, scene_scores
+from suite.report.statistics import LEVEL
 
 PLANNERS_AT_MOST = 30
 """More names can't be read."""
@@ -40,9 +41,16 @@ ABOVE = 0.95
 HOW_TO_READ = (
     "Each planner stands at its mean rank over the scenes; farther left is better. By gap: success "
     "first, then the median gap; by time: the median time to come within 1 %. Thick lines join "
-    "planners whose mean ranks differ by less than the critical difference (CD) of Nemenyi's test "
-    "at 5 %: these scenes do not tell them apart."
+    "planners that these scenes do not tell apart at 5 %: black, mean ranks that differ by less "
+    "than the critical difference (CD) of Nemenyi's test; grey, Wilcoxon's test of each pair, "
+    "corrected by Holm."
 )
+
+NEMENYI, WILCOXON = "black", "#9a9a9a"
+"""Colours of the lines that join planners."""
+
+Bar = tuple[float, float, str]
+"""Mean ranks between which there is no difference, and the colour of the test that says so."""
 
 
 def rank_figures(steps: Steps) -> dict[str, Figure]:
@@ -122,11 +130,48 @@ def joined(mean_ranks: Sequence[float], difference: float) -> list[tuple[int, in
     return groups
 
 
-def _bars(ranking: Ranking) -> list[tuple[float, float]]:
-    """Mean ranks between which there is no difference."""
-    ranks = sorted(ranking.mean.tolist())
+def _bars(ranking: Ranking) -> list[Bar]:
+    """Lines that join planners, of both tests."""
+    mean = ranking.mean.sort_values(kind="stable")
+    ranks = mean.tolist()
     groups = joined(ranks, ranking.critical_difference)
-    return [(ranks[first], ranks[last]) for first, last in groups]
+    pairwise = not_told([str(name) for name in mean.index], ranking.wilcoxon)
+    return [
+        *((ranks[first], ranks[last], NEMENYI) for first, last in groups),
+        *((ranks[first], ranks[last], WILCOXON) for first, last in pairwise),
+    ]
+
+
+def not_told(names: Sequence[str], p_value: Callable[[str, str], float]) -> list[tuple[int, int]]:
+    """Largest groups of neighbours of which no two are told apart at 5 %.
+
+    Parameters
+    ----------
+    names : sequence of str
+        In the order of their mean ranks.
+    p_value : callable
+        Of two names.
+
+    Returns
+    -------
+    list of (int, int)
+        First and last place of each group of two or more, none within another.
+
+    Examples
+    --------
+    >>> not_told("abc", lambda one, other: 0.01 if {one, other} == {"a", "c"} else 1.0)
+    [(0, 1), (1, 2)]
+    """
+    groups: list[tuple[int, int]] = []
+    for first in range(len(names)):
+        last = first
+        while last + 1 < len(names) and all(
+            p_value(names[i], names[last + 1]) >= 1.0 - LEVEL for i in range(first, last + 1)
+        ):
+            last += 1
+        if last > first and (not groups or last > groups[-1][1]):
+            groups.append((first, last))
+    return groups
 
 
 def _beside(found: Sequence[Ranking]) -> float:
@@ -143,7 +188,7 @@ def _rows(planners: int) -> int:
     return -(-planners // 2)
 
 
-def _draw(axes: Axes, ranking: Ranking, bars: Sequence[tuple[float, float]], beside: float) -> None:
+def _draw(axes: Axes, ranking: Ranking, bars: Sequence[Bar], beside: float) -> None:
     """Draw one diagram, with so much room on each side of its axis, in lengths of that.
 
     y counts rows of names downwards from the axis.
@@ -159,9 +204,9 @@ def _draw(axes: Axes, ranking: Ranking, bars: Sequence[tuple[float, float]], bes
     axes.set_title(f"{ranking.name} ({len(ranking.ranks)} scenes)", fontsize=10)
     _draw_axis(axes, count)
     _draw_difference(axes, ranking.critical_difference, count)
-    for i, (low, high) in enumerate(bars):
+    for i, (low, high, colour) in enumerate(bars):
         y = 0.4 + 0.4 * i
-        axes.plot([low - 0.2 * gap, high + 0.2 * gap], [y, y], color="black", linewidth=4)
+        axes.plot([low - 0.2 * gap, high + 0.2 * gap], [y, y], color=colour, linewidth=4)
     _draw_names(axes, mean, depth, gap)
 
 

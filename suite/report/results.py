@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from suite.dynamic.plain import from_data
 from suite.errors import KbgaBenchError, StoreError
 from suite.report.anytime import Steps, steps_of
+from suite.report.clock import fair
 from suite.report.comparison_figures import comparison_figures
 from suite.report.convergence_figures import convergence_figures
 from suite.report.dynamic_figures import plot_snapshots
@@ -95,7 +96,7 @@ def write_results(
     files = write_tables([t for t in tables if not t.detail], folder, Format.MARKDOWN)
     files += write_tables(tables, folder, Format.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
-    for name, figure in _figures(store, current, scenes, leave_out):
+    for name, figure in _figures(store, fair(current), scenes, leave_out):
         file = folder / f"{name}.{figures}"
         save(figure, file)
         files.append(file)

@@ -12,7 +12,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suite.report.anytime import Array, Steps, first_within, only
+from suite.report.anytime import Array, Steps, first_within, on_clock, only
+from suite.report.clock import joined, untimed_note
 from suite.report.panels import PLANNERS_AT_MOST, legend, logarithmic_time, look, numbered
 from suite.report.ranking import scene_scores
 
@@ -69,9 +70,10 @@ def plot_ecdf(steps: Steps) -> Figure:
     """
     planners = numbered(steps.runs["variant"])
     figure, panels = plt.subplots(1, 2, figsize=(9.4, 4.8), sharey=True, layout="constrained")
-    known = only(steps, ~np.isnan(steps.optimum))
-    variants = known.runs["variant"].to_numpy()
+    with_optimum = only(steps, ~np.isnan(steps.optimum))
     for axes, (clock, (label, unit)) in zip(panels, CLOCKS.items(), strict=True):
+        known = on_clock(with_optimum, clock)
+        variants = known.runs["variant"].to_numpy()
         reached = unit * np.array([first_within(known, clock, target) for target in TARGETS])
         # Runs without path alone, of a planner that does not count: as if it reached nothing.
         silent = set(variants[known.run[np.isnan(known.clocks[clock])]])
@@ -80,8 +82,9 @@ def plot_ecdf(steps: Steps) -> Figure:
         axes.set_xlabel(label)
     panels[0].set_ylabel("share of runs and targets reached")
     figure.suptitle("How soon runs come near the optimum", fontsize=11)
-    scenes = _scenes(known.runs["place"].nunique())
-    legend(figure, planners, ECDF_NOTE.format(scenes=scenes, targets=len(TARGETS)))
+    scenes = _scenes(with_optimum.runs["place"].nunique())
+    note = ECDF_NOTE.format(scenes=scenes, targets=len(TARGETS))
+    legend(figure, planners, joined(note, untimed_note(with_optimum.runs)))
     return figure
 
 

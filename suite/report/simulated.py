@@ -10,6 +10,7 @@ from typing import Any
 import pandas as pd
 
 from suite.paper.reported import KBGA, find
+from suite.report.clock import by_the_clock, joined, untimed_note
 from suite.report.summary import feasible, spread
 from suite.report.table import Table
 
@@ -74,12 +75,14 @@ def simulated_tables(
     if runs.empty:
         return []
     fared = runs.merge(simulations, on="key", how="left", validate="one_to_one")
-    asked = runs[["key", "world_settings", *GROUP]].merge(replans, on="key")
+    asked = runs[["key", "world_settings", "contended", *GROUP]].merge(replans, on="key")
+    note = joined(REPLANNING_NOTE, untimed_note(runs))
     tables = [
         Table("simulations", "How the robots fared", how_they_fared(fared), SIMULATION_NOTE),
-        Table("replanning", "How the planners answered", how_they_answered(asked), REPLANNING_NOTE),
+        Table("replanning", "How the planners answered", how_they_answered(asked), note),
     ]
-    ours = paper_dynamic(fared, asked)
+    timed = asked["latency_s"].where(by_the_clock(asked))
+    ours = paper_dynamic(fared, asked.assign(latency_s=timed))
     if not ours.empty:
         title = "The paper's dynamic environments (sections III-D and III-E)"
         tables.append(Table("paper-dynamic", title, ours, PAPER_NOTE))
@@ -124,7 +127,7 @@ def how_they_answered(replans: pd.DataFrame) -> pd.DataFrame:
     """
     rows = []
     for name, group in replans.groupby(GROUP, sort=False):
-        latency = 1e3 * group["latency_s"].dropna()
+        latency = 1e3 * group.loc[by_the_clock(group), "latency_s"].dropna()
         gaps = 100.0 * (group["cost"] / group["optimum"] - 1.0).dropna()
         missed = group["optimum"].notna() & group["cost"].isna() & group["latency_s"].notna()
         rows.append(

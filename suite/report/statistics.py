@@ -8,7 +8,8 @@ References
 ----------
 Agarwal, Schwarzer, Castro, Courville and Bellemare (2021), Deep reinforcement learning at the edge
 of the statistical precipice: interquartile mean, stratified bootstrap, probability of improvement.
-Holm (1979), A simple sequentially rejective multiple test procedure. Demsar (2006), Statistical
+Holm (1979), A simple sequentially rejective multiple test procedure. Wilcoxon (1945), Individual
+comparisons by ranking methods. Demsar (2006), Statistical
 comparisons of classifiers over multiple data sets: Friedman's and Nemenyi's tests.
 """
 
@@ -32,6 +33,9 @@ LEVEL = 0.95
 
 AT_ONCE = 1_000_000
 """Numbers that are drawn at once: bounds the memory, whatever the number of runs."""
+
+CONSTANT = 0
+"""In the place of a number of runs: they all came out the same, and are a constant."""
 
 ORDERS_AT_MOST = 4000
 """Of two samples with ties: fewer are all counted, as the normal distribution is too kind there."""
@@ -209,13 +213,72 @@ def _counted_or_approximated(m: int, n: int) -> Literal["auto", "exact"] | stats
     return "auto"
 
 
+def sign_test(scores: Array, constant: float) -> float:
+    """Two-sided p-value that scores lie as often below a constant as above it.
+
+    For a planner that is compared with one that gives the same result each time, which is one
+    score and no sample.
+
+    Parameters
+    ----------
+    scores : (n,) float64
+    constant : float
+
+    Returns
+    -------
+    float
+        1 if all are equal to the constant, which say nothing. Exact.
+
+    Examples
+    --------
+    >>> round(sign_test(np.array([2.0, 3.0, 4.0, np.inf, 1.0]), 1.0), 4)
+    0.125
+    """
+    below, above = int((scores < constant).sum()), int((scores > constant).sum())
+    if below + above == 0:
+        return 1.0
+    return float(stats.binomtest(below, below + above).pvalue)
+
+
+def signed_rank(differences: Array) -> float:
+    """Two-sided p-value of Wilcoxon's signed-rank test that differences are symmetric about 0.
+
+    Parameters
+    ----------
+    differences : (n,) float64
+        Of pairs. Those of 0 are left out, after Wilcoxon; infinite ones are the largest.
+
+    Returns
+    -------
+    float
+        1 if none is left. Exact, ties or not: all signs are counted.
+
+    Examples
+    --------
+    >>> signed_rank(np.array([1.0, 2.0, 3.0, 3.0, 5.0])), signed_rank(np.array([1.0, -1.0]))
+    (0.0625, 1.0)
+    """
+    there = differences[differences != 0.0]
+    if len(there) == 0:
+        return 1.0
+    # Twice a rank is a whole number, also where ranks tie.
+    ranks = np.rint(2.0 * stats.rankdata(np.abs(there))).astype(np.int64)
+    ways = np.ones(1)
+    for rank in ranks:
+        ways = np.append(ways, np.zeros(rank)) + np.append(np.zeros(rank), ways)
+    positive = int(ranks[there > 0.0].sum())
+    low = min(positive, int(ranks.sum()) - positive)
+    return float(min(1.0, 2.0 * ways[: low + 1].sum() / ways.sum()))
+
+
 @cache
 def smallest_p(m: int, n: int) -> float:
-    """The smallest p-value of :func:`mann_whitney` for so many scores: all of A below all of B.
+    """The smallest p-value for so many scores: all of A below all of B.
 
     Parameters
     ----------
     m, n : int
+        Of :func:`mann_whitney`; where one of them is :data:`CONSTANT`, of :func:`sign_test`.
 
     Returns
     -------
@@ -226,6 +289,8 @@ def smallest_p(m: int, n: int) -> float:
     >>> round(smallest_p(5, 5), 4), round(smallest_p(2, 2), 4)
     (0.0079, 0.3333)
     """
+    if CONSTANT in (m, n):
+        return sign_test(np.ones(max(m, n)), 0.0)
     return mann_whitney(np.zeros(m), np.ones(n))
 
 
@@ -271,6 +336,24 @@ def friedman(ranks: Array) -> tuple[float, float]:
         return np.nan, np.nan
     found = stats.friedmanchisquare(*ranks.T)
     return float(found.statistic), float(found.pvalue)
+
+
+@cache
+def nemenyi(difference: float, planners: int, tasks: int) -> float:
+    """P-value of Nemenyi's test for a difference of two mean ranks.
+
+    Parameters
+    ----------
+    difference : float
+    planners, tasks : int
+
+    Returns
+    -------
+    float
+    """
+    scale = np.sqrt(planners * (planners + 1) / (6.0 * tasks))
+    quantile = abs(difference) / scale * np.sqrt(2.0)
+    return float(stats.studentized_range.sf(quantile, planners, np.inf))
 
 
 def critical_difference(planners: int, tasks: int, level: float = LEVEL) -> float:

@@ -7,6 +7,7 @@ have none; no other number is put in its place.
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Set as AbstractSet
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,10 @@ import pandas as pd
 from suite.errors import KbgaBenchError
 from suite.report.anytime import Array, Steps, final_gaps
 from suite.report.compared import SIDE_BY_SIDE, at_a_glance
+from suite.report.deterministic import deterministic
 from suite.report.few_runs import too_few
 from suite.report.statistics import (
+    CONSTANT,
     Interval,
     bootstrap,
     holm,
@@ -24,6 +27,7 @@ from suite.report.statistics import (
     mann_whitney,
     probability_better,
     probability_interval,
+    sign_test,
 )
 from suite.report.table import Table
 
@@ -38,6 +42,11 @@ IQM_NOTE = (
 INTERVAL_NOTE = (
     "Low and high: 95 % intervals of a bootstrap that resamples the runs within each scene; empty "
     "where a scene has one run."
+)
+CONSTANT_NOTE = (
+    "Came out the same in every run of a scene, and so count once: {names}. They have no interval "
+    "of their own; others are compared with their one result by a sign test of the runs above and "
+    "below it."
 )
 PAIR_NOTE = (
     "P({reference} better): probability that a run of {reference} ends with a smaller gap than a "
@@ -95,7 +104,10 @@ def _side_by_side(columns: "list[pd.Series[Any]]") -> Array:
 
 
 def planner_statistics(
-    scores: Mapping[str, Array], rng: np.random.Generator, reference: str
+    scores: Mapping[str, Array],
+    rng: np.random.Generator,
+    reference: str,
+    constant: AbstractSet[str] = frozenset(),
 ) -> pd.DataFrame:
     """Interquartile mean of the gap and probability that the reference is better, with intervals.
 
@@ -106,6 +118,8 @@ def planner_statistics(
     rng : numpy.random.Generator
     reference : str
         One of the planners.
+    constant : set of str
+        Those of which all runs of a scene are one; see :func:`suite.report.deterministic`.
 
     Returns
     -------
@@ -114,23 +128,32 @@ def planner_statistics(
     """
     rows = []
     for planner, mine in scores.items():
+        # Equal runs drawn again are the same, so the draws below need no other scores.
+        counted = mine[:1] if planner in constant else mine
+        mean = bootstrap(mine, interquartile_mean, rng)
         row: dict[str, Any] = {
             "planner": planner,
-            "runs": int((~np.isnan(mine)).sum()),
-            "without path": int(np.isinf(mine).sum()),
-            **_named("gap IQM (%)", _in_per_cent(bootstrap(mine, interquartile_mean, rng))),
+            "runs": int((~np.isnan(counted)).sum()),
+            "without path": int(np.isinf(counted).sum()),
+            **_named("gap IQM (%)", _in_per_cent(_one(mean) if planner in constant else mean)),
         }
         if planner != reference:
             better = probability_interval(scores[reference], mine, rng)
-            row |= _named(_better(reference), better)
+            both = {planner, reference} <= constant
+            row |= _named(_better(reference), _one(better) if both else better)
         rows.append(row)
     return pd.DataFrame(rows)
 
 
 def scene_statistics(
-    scenes: list[str], scores: Mapping[str, Array], reference: str
+    scenes: list[str],
+    scores: Mapping[str, Array],
+    reference: str,
+    constant: AbstractSet[str] = frozenset(),
 ) -> pd.DataFrame:
-    """Mann and Whitney's test of the reference against each other planner on each scene.
+    """Tests of the reference against each other planner on each scene.
+
+    Mann and Whitney's, or a sign test where one of both came out the same each time.
 
     Parameters
     ----------
@@ -138,24 +161,51 @@ def scene_statistics(
     scores : mapping from planner to (runs, scenes) float64
     reference : str
         One of the planners.
+    constant : set of str
+        Those of which all runs of a scene are one.
 
     Returns
     -------
     DataFrame
-        A row for each other planner and scene; p-values as they are, and corrected for the number
-        of rows, after Holm.
+        A row for each other planner and scene; p-values as they are, and corrected for their
+        number, after Holm. nan between two constants, which need no test.
     """
     rows = []
     for planner in [name for name in scores if name != reference]:
         for j, scene in enumerate(scenes):
             mine, other = (scores[name][:, j] for name in (reference, planner))
             better = probability_better(mine[:, None], other[:, None])
-            p_value = mann_whitney(mine[~np.isnan(mine)], other[~np.isnan(other)])
+            p_value = _p_value(
+                mine[~np.isnan(mine)],
+                other[~np.isnan(other)],
+                (reference in constant, planner in constant),
+            )
             rows.append(
                 {"scene": scene, "planner": planner, _better(reference): better, "p": p_value}
             )
     frame = pd.DataFrame(rows)
-    return frame.assign(**{"Holm's p": holm(frame["p"].to_numpy())}) if rows else frame
+    if not rows:
+        return frame
+    p_values = frame["p"].to_numpy()
+    corrected = np.full(len(frame), np.nan)
+    corrected[~np.isnan(p_values)] = holm(p_values[~np.isnan(p_values)])
+    return frame.assign(**{"Holm's p": corrected})
+
+
+def _p_value(mine: Array, other: Array, constant: tuple[bool, bool]) -> float:
+    """P-value between two planners on a scene, of which either may be one score and no sample."""
+    if all(constant):
+        return float("nan")
+    if constant[0]:
+        return sign_test(other, float(mine[0]))
+    if constant[1]:
+        return sign_test(mine, float(other[0]))
+    return mann_whitney(mine, other)
+
+
+def _one(interval: Interval) -> Interval:
+    """An estimate of what does not vary."""
+    return Interval(interval.estimate, np.nan, np.nan)
 
 
 def reference_of(scores: Mapping[str, Array]) -> str:
@@ -184,30 +234,39 @@ def statistics_tables(
         return []
     where = f"{len(scenes)} scene{'s' if len(scenes) != 1 else ''}"
     one = reference or reference_of(scores)
-    overall = planner_statistics(scores, rng, one)
+    constant = deterministic(steps.runs)
+    overall = planner_statistics(scores, rng, one, constant)
+    names = ", ".join(name for name in scores if name in constant)
+    told = f" {CONSTANT_NOTE.format(names=names)}" if names else ""
     if len(scores) == 1:
         title = f"Gap over {where}, with 95 % intervals"
-        return [Table("statistics", title, overall, f"{IQM_NOTE} {INTERVAL_NOTE}", "none")]
+        return [Table("statistics", title, overall, f"{IQM_NOTE} {INTERVAL_NOTE}{told}", "none")]
     pair = PAIR_NOTE.format(reference=one)
     title = (
         f"Gap over {where}, and probability that {one} is better than the planner of the row, with "
         "95 % intervals"
     )
-    note = f"{IQM_NOTE} {pair}; mean over the scenes. {INTERVAL_NOTE}"
-    tests = _scene_tables(scenes, scores, one, pair)
+    note = f"{IQM_NOTE} {pair}; mean over the scenes. {INTERVAL_NOTE}{told}"
+    tests = _scene_tables(scenes, scores, one, pair, constant)
     return [Table("statistics", title, overall, note, "none"), *tests]
 
 
 def _scene_tables(
-    scenes: list[str], scores: Mapping[str, Array], reference: str, pair: str
+    scenes: list[str],
+    scores: Mapping[str, Array],
+    reference: str,
+    pair: str,
+    constant: AbstractSet[str],
 ) -> list[Table]:
-    """Mann and Whitney's tests: at a glance, where there is room, and as rows."""
-    tested = scene_statistics(scenes, scores, reference)
-    warning = too_few(_sizes(scores, reference))
+    """The tests: at a glance, where there is room, and as rows."""
+    tested = scene_statistics(scenes, scores, reference, constant)
+    warning = too_few(_sizes(scores, reference, constant))
     tests = (
         "Mann and Whitney's two-sided p-value, after Holm's correction for all "
-        f"{len(tested)} comparisons of this table."
+        f"{int(tested['p'].notna().sum())} comparisons of this table."
     )
+    if constant & set(scores):
+        tests += " Of planners that came out the same each time, a sign test's."
     rows = Table(
         "statistics-scenes-rows",
         f"Tests of {reference} against the planner of the row, scene by scene",
@@ -223,14 +282,19 @@ def _scene_tables(
     return [Table("statistics-scenes", title, glanced, note), rows]
 
 
-def _sizes(scores: Mapping[str, Array], reference: str) -> list[tuple[int, int]]:
-    """Numbers of runs of the two sides of each comparison."""
-    runs = {name: (~np.isnan(mine)).sum(axis=0).tolist() for name, mine in scores.items()}
+def _sizes(
+    scores: Mapping[str, Array], reference: str, constant: AbstractSet[str]
+) -> list[tuple[int, int]]:
+    """Numbers of runs of the two sides of each comparison that is tested."""
+    runs = {
+        name: [CONSTANT] * mine.shape[1] if name in constant else (~np.isnan(mine)).sum(axis=0)
+        for name, mine in scores.items()
+    }
     return [
-        pair
+        (int(mine), int(other))
         for name in scores
-        if name != reference
-        for pair in zip(runs[reference], runs[name], strict=True)
+        if name != reference and not {name, reference} <= constant
+        for mine, other in zip(runs[reference], runs[name], strict=True)
     ]
 
 
@@ -239,7 +303,7 @@ def _tested(reference: str, *, with_p: bool) -> Callable[[Mapping[Any, Any]], st
         better = f"{row[_better(reference)]:.2f}"
         p_value = row["Holm's p"]
         small = "<0.001" if p_value < 0.001 else f"{p_value:.3f}"
-        return f"{better} ({small})" if with_p else better
+        return f"{better} ({small})" if with_p and not np.isnan(p_value) else better
 
     return cell
 

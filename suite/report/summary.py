@@ -10,6 +10,7 @@ from typing import Any
 import pandas as pd
 
 from suite.planner import PlanStatus
+from suite.report.clock import joined, untimed_note
 from suite.report.table import Table
 
 SUCCESSES = (str(PlanStatus.SOLVED), str(PlanStatus.INFEASIBLE))
@@ -90,7 +91,7 @@ def summary_tables(runs: pd.DataFrame, left_out: int = 0) -> list[Table]:
         Rows that were left out as outdated; the note counts them.
     """
     frame = summary(runs)
-    note = f"{_counted(runs)} {WORDS} {NOTE}"
+    note = joined(f"{_counted(runs)} {WORDS} {NOTE}", untimed_note(runs))
     if left_out:
         note += f" Left out: {left_out} rows of scenes, settings or planners that changed since."
     narrow = frame[[name for name in NARROW if name in frame]]

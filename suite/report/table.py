@@ -220,7 +220,7 @@ def _digits(column: str) -> int | None:
         return AS_PRINTED
     if column.startswith("ours") and "cost" not in column and "gen" not in column:
         return None
-    if column in ("p", "Holm's p"):
+    if column in ("p", "Holm's p") or column.endswith(" p"):
         return 4
     return 3 if column.endswith("s)") else 1 if column.startswith(("gen", "checks")) else 2
 

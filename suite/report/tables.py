@@ -1,11 +1,16 @@
 """All tables of a store's runs: pure functions of its rows."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 
 from suite.report.ablation import ablation_tables
 from suite.report.anytime import Steps, steps_of
 from suite.report.budgets import budget_tables
+from suite.report.clock import dropped_note, fair, joined
+from suite.report.contrasts import contrast_table
+from suite.report.differences import difference_tables
 from suite.report.newest import newest
 from suite.report.paper_tables import COST_NOTE, paper_tables
 from suite.report.ranking import ranking_tables
@@ -59,17 +64,18 @@ def all_tables(
         If no run is of the reference.
     """
     check_reference(runs["variant"], reference)
-    kept = newest(runs)
-    left_out = len(runs) - len(kept)
+    current = newest(runs)
+    left_out = len(runs) - len(current)
+    kept, busy = fair(current), dropped_note(current)
     driven = kept[is_simulated(kept)]
     kept = kept[~is_simulated(kept)]
     moving = []
     if simulations is not None and replans is not None:
         moving = simulated_tables(driven, simulations, replans)
     answers = verdict_table(Rows(kept, driven, _or_empty(first), _or_empty(replans)))
-    told = [] if answers is None else [answers]
+    told = [table for table in (answers, contrast_table(kept)) if table is not None]
     if kept.empty and moving:
-        return _paper_last([*moving, *told])
+        return _paper_last([*moving, *told], busy)
     measured = [] if events is None else measured_tables(steps_of(kept, events), reference)
     return _paper_last(
         [
@@ -77,15 +83,19 @@ def all_tables(
             *moving,
             *study_tables(kept, first),
             *ablation_tables(kept, COST_NOTE),
+            *difference_tables(kept),
             *measured,
             *told,
             *paper_tables(kept),
-        ]
+        ],
+        busy,
     )
 
 
-def _paper_last(tables: list[Table]) -> list[Table]:
-    return sorted(tables, key=lambda table: table.name.startswith("paper-"))
+def _paper_last(tables: list[Table], left_out: str) -> list[Table]:
+    """The tables in their order, each saying which rows none of them counts."""
+    ordered = sorted(tables, key=lambda table: table.name.startswith("paper-"))
+    return [replace(table, note=joined(table.note, left_out)) for table in ordered]
 
 
 def _or_empty(frame: pd.DataFrame | None) -> pd.DataFrame:
@@ -95,7 +105,7 @@ def _or_empty(frame: pd.DataFrame | None) -> pd.DataFrame:
 def measured_tables(steps: Steps, reference: str | None = None) -> list[Table]:
     """The ranking, fixed targets and budgets, and the statistics of runs as step functions."""
     return [
-        *ranking_tables(steps),
+        *ranking_tables(steps, reference),
         *target_tables(steps),
         *budget_tables(steps),
         *statistics_tables(steps, np.random.default_rng(BOOTSTRAP_SEED), reference),

@@ -11,14 +11,17 @@ import numpy as np
 import pandas as pd
 
 from suite.report.anytime import Steps, first_within
+from suite.report.clock import by_the_clock, joined, untimed_note
 from suite.report.compared import SIDE_BY_SIDE, at_a_glance
 from suite.report.table import Table
 
 TARGETS = (0.05, 0.02, 0.01, 0.001)
 """Gaps to the optimum."""
 
+TIME = "time median (ms)"
+
 MEASURES = {
-    "time median (ms)": ("wall_s", 1e3),
+    TIME: ("wall_s", 1e3),
     "cpu median (ms)": ("cpu_s", 1e3),
     "gen median": ("generation", 1.0),
     "checks median": ("checks", 1.0),
@@ -84,9 +87,11 @@ def _of_target(steps: Steps, target: float) -> pd.DataFrame:
         },
         index=names.index,
     )
+    timed = by_the_clock(steps.runs)[with_optimum]
     found = medians(taken, names)
+    found[TIME] = medians(taken.loc[timed, [TIME]], names[timed])[TIME]
     # The wall clock is never missing: what is finite on it was reached.
-    reached = np.isfinite(taken["time median (ms)"]).groupby([names[c] for c in names], sort=False)
+    reached = np.isfinite(taken[TIME]).groupby([names[c] for c in names], sort=False)
     counts = reached.agg(["size", "sum"])
     frame = pd.DataFrame(
         {
@@ -107,12 +112,14 @@ def target_tables(steps: Steps) -> list[Table]:
     if frame.empty:
         return []
     title = "What it takes to come within a gap of the optimum"
-    rows = Table("fixed-target-rows", title, frame, NOTE, infinite="never", detail=True)
+    left_out = untimed_note(steps.runs)
+    note = joined(NOTE, left_out)
+    rows = Table("fixed-target-rows", title, frame, note, infinite="never", detail=True)
     if frame["scene"].nunique() > SIDE_BY_SIDE:
         return [rows]
     glanced = at_a_glance(_with_target_names(frame), ["planner", "within"], _time)
     title = "Median time (ms) to come within a gap of the optimum"
-    return [Table("fixed-target", title, glanced, GLANCE_NOTE), rows]
+    return [Table("fixed-target", title, glanced, joined(GLANCE_NOTE, left_out)), rows]
 
 
 def _with_target_names(frame: pd.DataFrame) -> pd.DataFrame:
@@ -124,9 +131,11 @@ def _with_target_names(frame: pd.DataFrame) -> pd.DataFrame:
 
 def _time(row: Mapping[Any, Any]) -> str:
     share = f"{row['reached']} of {row['runs']}"
-    if np.isinf(row["time median (ms)"]):
+    if np.isnan(row[TIME]):
+        return f"contended ({share})"
+    if np.isinf(row[TIME]):
         return f"never ({share})"
-    time = significant(row["time median (ms)"])
+    time = significant(row[TIME])
     return time if row["reached"] == row["runs"] else f"{time} ({share})"
 
 

@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from suite.report.clock import by_the_clock, dropped_note, fair, joined, untimed_note
 from suite.report.few_runs import too_few
 from suite.report.newest import newest
 from suite.report.statistics import LEVEL, REPETITIONS, holm, mann_whitney
@@ -119,7 +120,7 @@ def compare_versions(
     rows = [row for measure, pairs in scores.items() for row in _rows(measure, pairs, rng)]
     frame = pd.DataFrame(rows, columns=list(_EMPTY) if not rows else None)
     counted = frame if with_times else frame[~frame["measure"].isin(_TIMES)]
-    note = NOTE + _left_out(before, after, common)
+    note = joined(NOTE + _left_out(before, after, common), *_busy("old", old), *_busy("new", new))
     if not with_times:
         same = set(old["host"]) == set(new["host"])
         note += TIME_NOTE.format(where="one host" if same else "different hosts")
@@ -135,7 +136,7 @@ _EMPTY = (
 
 
 def _groups(runs: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
-    for place, group in newest(runs).groupby(PLACE, sort=False, dropna=False):
+    for place, group in fair(newest(runs)).groupby(PLACE, sort=False, dropna=False):
         yield tuple(part if isinstance(part, str) else "" for part in place), group
 
 
@@ -183,6 +184,8 @@ def _too_few(scores: Mapping[Measure, Pairs]) -> str:
 
 def _scores(runs: pd.DataFrame, measure: Measure) -> NDArray[np.float64]:
     """The measure of each run; infinite for one without a path, missing for one that has none."""
+    if measure.is_time:
+        runs = runs[by_the_clock(runs)]
     values = measure.factor * runs[measure.column].astype("float64")
     if measure.column == "cost":
         # The right answer that there is no path has no cost, and there is none better.
@@ -226,6 +229,14 @@ def _verdict(old: NDArray[np.float64], new: NDArray[np.float64], p: float) -> st
 def _names(place: tuple[str, ...]) -> dict[str, str]:
     scene, _, world, variant = place
     return {"scene": f"{scene}, {world}" if world else scene, "planner": variant}
+
+
+def _busy(which: str, runs: pd.DataFrame) -> Iterator[str]:
+    """What the load of a machine took out of a store's rows: it must not look like a change."""
+    current = newest(runs)
+    for sentence in (dropped_note(current), untimed_note(fair(current))):
+        if sentence:
+            yield f"In the {which} store: {sentence[0].lower()}{sentence[1:]}"
 
 
 def _left_out(before: Any, after: Any, common: Places) -> str:

@@ -4,6 +4,11 @@ The files are reconstructions of the environments in Hu and Yang's paper, whose 
 available: each file says so, names its figure, and states the exact optimum of its query. The
 others are scattered scenes, for studies with more obstacles than the paper's, and moving scenes,
 for claims about any dynamic scene.
+
+No corner lies on a crossing of any small lattice, so that no planner owes its results to where we
+drew the walls. Scenes that were once drawn on whole metres stay as they were, as controls named
+``*_aligned``. Any scene may be turned, shifted and scaled, as in ``zigzag@turn=17,shift=0.37`` or
+``my.geojson@twin=3``: see :mod:`suite.scenes.modifiers`.
 """
 
 import os
@@ -13,8 +18,10 @@ from suite.errors import SceneError
 from suite.hints import did_you_mean
 from suite.scene import Scene, make_scene
 from suite.scene_file import SUFFIXES, read_scene
+from suite.scenes.modifiers import parse_modifiers, split_modifiers
 from suite.scenes.moving import moving, moving_name, parse_moving_name
 from suite.scenes.scattered import parse_scattered_name, scattered, scattered_name
+from suite.scenes.similarity import modified
 
 _FOLDER = Path(__file__).parent
 _PAPER_ORDER = (
@@ -28,6 +35,14 @@ _PAPER_ORDER = (
     "obstacles_40",
 )
 _DYNAMIC = ("door", "unknown_obstacles")
+_ALIGNED = (
+    "maze_aligned",
+    "zigzag_aligned",
+    "double_u_aligned",
+    "door_aligned",
+    "unknown_obstacles_aligned",
+)
+_FILES = _PAPER_ORDER + _DYNAMIC + _ALIGNED
 _SCATTERED = (100, 300, 1000, 3000)
 """Obstacles of the scattered scenes that are listed; other numbers and seeds need no list."""
 
@@ -64,6 +79,25 @@ def dynamic_names() -> list[str]:
     return list(_DYNAMIC)
 
 
+def aligned_names() -> list[str]:
+    """Names of the controls: scenes as they were first drawn, with corners on whole metres.
+
+    The lattice of a planner may have nodes on all of their corners, by which it would look better
+    than it is. They are for showing that, and for nothing else.
+
+    Returns
+    -------
+    list of str
+        In the order of the scenes that replaced them, whose names they hold.
+
+    Examples
+    --------
+    >>> aligned_names()[0]
+    'maze_aligned'
+    """
+    return list(_ALIGNED)
+
+
 def generated_names() -> list[str]:
     """Names of the generated scenes that studies use, and of one whose obstacles move.
 
@@ -85,14 +119,15 @@ def generated_names() -> list[str]:
 
 
 def has_scene(name: str) -> bool:
-    """Whether the catalogue has a scene of that name, in a file or generated.
+    """Whether the catalogue has a scene of that name, in a file or generated, modified or not.
 
     Examples
     --------
-    >>> has_scene("maze"), has_scene("scattered_50-7"), has_scene("maze.geojson")
+    >>> has_scene("maze@turn=3"), has_scene("scattered_50-7"), has_scene("maze.geojson")
     (True, True, False)
     """
-    return name in _PAPER_ORDER + _DYNAMIC or _is_generated(name)
+    base, _ = split_modifiers(name)
+    return base in _FILES or _is_generated(base)
 
 
 def scene_file(name: str) -> Path:
@@ -101,7 +136,7 @@ def scene_file(name: str) -> Path:
     Parameters
     ----------
     name : str
-        One of :func:`scene_names` or :func:`dynamic_names`.
+        One of :func:`scene_names`, :func:`dynamic_names` or :func:`aligned_names`.
 
     Returns
     -------
@@ -116,7 +151,7 @@ def scene_file(name: str) -> Path:
         raise SceneError(
             f"{name}: is generated and has no file. Write one with `kbga-bench generate`."
         )
-    if name not in _PAPER_ORDER + _DYNAMIC:
+    if name not in _FILES:
         raise SceneError(_unknown(name))
     return _FOLDER / f"{name}.geojson"
 
@@ -127,9 +162,10 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
     Parameters
     ----------
     name_or_path : str or Path
-        One of :func:`scene_names`, :func:`dynamic_names` or :func:`generated_names`, or a scene
-        file. A string with a path separator or with the suffix of a scene file (``.geojson``,
-        ``.json``) is a path.
+        One of :func:`scene_names`, :func:`dynamic_names`, :func:`aligned_names` or
+        :func:`generated_names`, or a scene file; with or without modifiers behind an ``@``, see
+        :mod:`suite.scenes.modifiers`. A string with a path separator or with the suffix of a scene
+        file (``.geojson``, ``.json``) is a path. A Path has no modifiers.
     inflate : float
         Radius of the robot, metres; see :func:`suite.scene.make_scene`.
 
@@ -146,7 +182,14 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
     --------
     >>> load_scene("maze").properties["figure"]
     '7'
+    >>> load_scene("maze@turn=17").name
+    'maze@turn=17'
     """
+    if not isinstance(name_or_path, Path):
+        base, text = split_modifiers(name_or_path)
+        if text:
+            modifiers = parse_modifiers(text, name_or_path)
+            return modified(load_scene(base), modifiers, inflate=inflate)
     if _is_path(name_or_path):
         return read_scene(Path(name_or_path), inflate=inflate)
     name = str(name_or_path)
@@ -189,6 +232,6 @@ def _unknown(name: str) -> str:
     message = (
         f"no scene '{name}'. Catalogue: {', '.join(_PAPER_ORDER)}. Dynamic: {', '.join(_DYNAMIC)}. "
         f"Generated: {', '.join(generated_names())}, or scattered_N-S for N obstacles and seed S, "
-        "moving-S for seed S."
+        f"moving-S for seed S. Controls: {', '.join(_ALIGNED)}."
     )
-    return message + did_you_mean(name, [*_PAPER_ORDER, *_DYNAMIC, *generated_names()])
+    return message + did_you_mean(name, [*_FILES, *generated_names()])

@@ -11,6 +11,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
+from kbga.counter import make_counter
 from kbga.draws import Draws, left_of, make_draws, refill
 from kbga.encoding import (
     GOAL,
@@ -25,13 +26,13 @@ from kbga.evolution import best_feasible, first_population, next_children
 from kbga.memory import empty_memory
 from kbga.operators.crossover import crossover
 from kbga.operators.deletion import delete
-from kbga.operators.detour import Scratch, make_scratch
+from kbga.operators.detour import Scratch
 from kbga.operators.improvement import improve
 from kbga.operators.mutation import mutate
-from kbga.operators.repair import repair
+from kbga.operators.repair import repair, scratch_for
 from kbga.problem import Problem, make_problem, near_count, near_node
 from kbga.selection import keep_elite
-from kbga.settings import KBGASettings
+from kbga.settings import KBGAPlusSettings, KBGASettings
 from kbga.tuning import Rates, empty_tally, rates_of
 from suite.geometry.kernels import first_collision
 from suite.scene import Query, Scene, make_scene
@@ -93,8 +94,7 @@ class Laboratory:
             i,
             self.scratch,
             self.problem,
-            self.rates.penalty,
-            self.rates.repair_candidates,
+            self.rates,
             self.fresh_draws(),
             self.counter,
         )
@@ -105,7 +105,7 @@ class Laboratory:
             i,
             self.scratch,
             self.problem,
-            self.rates.penalty,
+            self.rates,
             self.fresh_draws(),
             self.counter,
         )
@@ -116,8 +116,7 @@ class Laboratory:
             i,
             self.scratch,
             self.problem,
-            self.rates.penalty,
-            self.rates.improvement_radius,
+            self.rates,
             self.fresh_draws(),
             self.counter,
         )
@@ -195,22 +194,29 @@ def genes_of(population: Population, i: int) -> list[int]:
 
 
 def laboratory(scene: Scene, seed: int = 0, **settings: float) -> Laboratory:
-    """A first population on a scene, with any of KBGASettings."""
-    chosen = KBGASettings(**{"resolution": 10, "population_size": 10, **settings})
+    """A first population on a scene, with any of KBGAPlusSettings, which use operators fully."""
+    chosen = KBGAPlusSettings(**{"resolution": 10, "population_size": 10, **settings})
     rates = rates_of(chosen)
     query = scene.query()
     rng = np.random.default_rng(seed)
+    problem = make_problem(
+        scene.arrangement,
+        scene.bounds,
+        chosen.resolution,
+        room=scene.workspace,
+        reach=chosen.repair_reach,
+    )
     made = Laboratory(
         query=query,
         settings=chosen,
-        problem=make_problem(scene.arrangement, scene.bounds, chosen.resolution),
+        problem=problem,
         rates=rates,
         rng=rng,
         draws=make_draws(rng, 2 * BLOCK),
         population=empty_population(chosen.population_size, chosen.max_nodes),
         children=empty_population(chosen.population_size, chosen.max_nodes),
-        scratch=make_scratch(max(8, chosen.repair_candidates)),
-        counter=np.zeros(1, np.int64),
+        scratch=scratch_for(problem, chosen),
+        counter=make_counter(),
         tally=empty_tally(),
     )
     first_population(
@@ -237,8 +243,8 @@ def with_paths(lab: Laboratory, *paths: list[tuple[float, float]]) -> Laboratory
         row = nodes[i]
         row[:] = np.zeros(1, row.dtype)
         for k, (x, y) in enumerate(places):
-            column, line = (x - lattice.x0) / lattice.dx, (y - lattice.y0) / lattice.dy
-            row["gene"][k] = round(line) * lattice.side + round(column)
+            column, line = (x - lattice.x0) / lattice.unit, (y - lattice.y0) / lattice.unit
+            row["gene"][k] = round(line) * lattice.columns + round(column)
             row["x"][k], row["y"][k] = x, y
         row["gene"][0], row["gene"][len(path) + 1] = START, GOAL
         fresh = evaluated(lab, row[: len(places)])
@@ -264,7 +270,7 @@ def evaluated(lab: Laboratory, row: np.ndarray) -> np.ndarray:
     for name in ("gene", "x", "y"):
         fresh[name][0, : len(row)] = row[name]
     for k in range(len(row) - 1):
-        evaluate_segment(fresh, 0, k, lab.problem.arrays, empty_memory(), np.zeros(1, np.int64))
+        evaluate_segment(fresh, 0, k, lab.problem.arrays, empty_memory(), make_counter())
     return fresh[0, : len(row)]
 
 
@@ -280,8 +286,8 @@ def detour(lab: Laboratory, before: np.void, gene: int, after: np.void) -> np.nd
 def place_of(lab: Laboratory, gene: int) -> tuple[float, float]:
     """Coordinates of a lattice number, as the scene's grid of 1e-9 m has them."""
     lattice = lab.problem.lattice
-    x = np.round(lattice.x0 + lattice.dx * (gene % lattice.side), 9)
-    y = np.round(lattice.y0 + lattice.dy * (gene // lattice.side), 9)
+    x = np.round(lattice.x0 + lattice.unit * (gene % lattice.columns), 9)
+    y = np.round(lattice.y0 + lattice.unit * (gene // lattice.columns), 9)
     return float(x), float(y)
 
 
@@ -306,7 +312,7 @@ def check_chromosome(lab: Laboratory, population: Population, i: int) -> None:
     assert (row["x"][-1], row["y"][-1]) == tuple(lab.query.goal)
     places = [place_of(lab, gene) for gene in genes[1:-1]]
     assert list(zip(row["x"][1:-1].tolist(), row["y"][1:-1].tolist(), strict=True)) == places
-    assert all(0 <= gene < lab.problem.lattice.side**2 for gene in genes[1:-1])
+    assert all(0 <= gene < len(lab.problem.usable) for gene in genes[1:-1])
     assert len(set(genes)) == len(genes), "a lattice node occurs twice"
     check_records(lab, chromosome, row)
     for k in range(1, size + 1):
@@ -345,11 +351,11 @@ def check_flags(lab: Laboratory, row: np.ndarray, k: int) -> None:
 
 
 def neighbours(lab: Laboratory, gene: int) -> list[int]:
-    side = lab.problem.lattice.side
-    column, line = gene % side, gene // side
+    columns, rows = lab.problem.lattice.columns, lab.problem.lattice.rows
+    column, line = gene % columns, gene // columns
     return [
-        j * side + i
-        for i in range(max(0, column - 1), min(side, column + 2))
-        for j in range(max(0, line - 1), min(side, line + 2))
+        j * columns + i
+        for i in range(max(0, column - 1), min(columns, column + 2))
+        for j in range(max(0, line - 1), min(rows, line + 2))
         if (i, j) != (column, line)
     ]

@@ -18,7 +18,7 @@ from numba import config
 
 from kbga.algorithm import KBGA
 from kbga.evolution import next_children
-from kbga.settings import KBGASettings
+from kbga.settings import KBGAPlusSettings, KBGASettings
 from kbga.tuning import rates_of
 from suite.exact import shortest_path
 from suite.geometry.kernels import first_collision
@@ -28,7 +28,7 @@ from suite.scenes.catalogue import load_scene, scene_names
 from tests.kbga.laboratory import ENDS, random_scene, scene_of
 from tests.suite.geometry.lattice import COMPILED, counts, pinches
 
-SMALL = KBGASettings(population_size=12, resolution=20, max_generations=counts(12, 5))
+SMALL = KBGAPlusSettings(population_size=12, resolution=20, max_generations=counts(12, 5))
 WALL = scene_of(shapely.box(4, 0, 6, 8))
 CLOSED = scene_of(shapely.box(8, 8, 10, 10).difference(shapely.box(8.5, 8.5, 9.5, 9.5)))
 
@@ -138,7 +138,7 @@ def test_it_can_be_ended_before_the_first_generation():
 @pytest.mark.parametrize("max_nodes", [2, 3, 48])
 @pytest.mark.parametrize("resolution", [2, 7])
 def test_without_obstacles_it_finds_the_straight_line(max_nodes, resolution):
-    settings = KBGASettings(population_size=6, resolution=resolution, max_nodes=max_nodes)
+    settings = KBGAPlusSettings(population_size=6, resolution=resolution, max_nodes=max_nodes)
     ga = evolve(scene_of(), settings)
     assert ga.best_cost == pytest.approx(8 * np.sqrt(2))
     assert ga.best_path is not None
@@ -184,13 +184,16 @@ def test_the_referee_accepts_every_path_among_touching_obstacles(seed, resolutio
 
 def test_among_few_obstacles_it_finds_the_optimum_or_that_there_is_no_path():
     found = 0
-    for seed in range(counts(120, 2)):
+    for seed in range(counts(400, 20)):
         scene = random_scene(np.random.default_rng(seed))
-        xmin, ymin, xmax, ymax = scene.bounds
-        # All corners of these scenes lie on quarters of a metre, and so do the nodes.
-        resolution = 4 * int(max(xmax - xmin, ymax - ymin))
+        # All corners of these scenes lie on quarters of a metre; where the room's area is that of a
+        # square of whole metres, so do the nodes.
+        side = np.sqrt(scene.workspace.area)
+        if side != round(side):
+            continue
+        resolution = 4 * int(side)
         optimum = shortest_path(scene, scene.query()).length
-        ga = evolve(scene, KBGASettings(resolution=resolution, max_generations=counts(60, 25)))
+        ga = evolve(scene, KBGAPlusSettings(resolution=resolution, max_generations=counts(60, 25)))
         assert ga.best_cost == pytest.approx(optimum, rel=1e-9), f"seed {seed}"
         found += ga.best_path is not None
     assert found > 0
@@ -200,7 +203,7 @@ def test_among_few_obstacles_it_finds_the_optimum_or_that_there_is_no_path():
 def test_the_referee_accepts_its_paths_in_the_catalogue(name):
     scene = load_scene(name)
     for seed in range(counts(3, 1)):
-        ga = evolve(scene, KBGASettings() if COMPILED else SMALL, seed)
+        ga = evolve(scene, KBGAPlusSettings() if COMPILED else SMALL, seed)
         assert ga.best_path is not None
         assert first_collision(ga.best_path, scene.arrays) == -1
         verdict = judge(scene, scene.query(), ga.best_path)

@@ -36,18 +36,48 @@ BOUNDS = [
 @pytest.mark.parametrize("resolution", [2, 3, 7, 100])
 def test_a_lattice_number_and_its_place_tell_the_same(bounds, resolution):
     lattice = make_lattice(bounds, resolution)
-    side = resolution + 1
-    assert lattice.side == side
-    for node in {0, 1, resolution, side, 2 * side - 1, side * side // 2, side * side - 1}:
-        column = (node_x(lattice, node) - bounds[0]) / (bounds[2] - bounds[0]) * resolution
-        row = (node_y(lattice, node) - bounds[1]) / (bounds[3] - bounds[1]) * resolution
+    columns, count = lattice.columns, lattice.columns * lattice.rows
+    for node in {0, 1, columns - 1, columns, 2 * columns - 1, count // 2, count - 1} & {
+        *range(count)
+    }:
+        column = (node_x(lattice, node) - bounds[0]) / lattice.unit
+        row = (node_y(lattice, node) - bounds[1]) / lattice.unit
         assert column == pytest.approx(round(column), abs=1e-6)
-        assert round(row) * side + round(column) == node
+        assert round(row) * columns + round(column) == node
 
 
 @pytest.mark.parametrize("bounds", BOUNDS)
 @pytest.mark.parametrize("resolution", [2, 3, 7, 100])
-def test_the_lattice_ends_exactly_on_the_border(bounds, resolution):
+def test_units_are_squares_and_as_many_as_the_resolution_squared(bounds, resolution):
+    lattice = make_lattice(bounds, resolution)
+    area = (bounds[2] - bounds[0]) * (bounds[3] - bounds[1])
+    assert lattice.unit**2 * resolution**2 == pytest.approx(area)
+    sides = bounds[2] - bounds[0], bounds[3] - bounds[1]
+    for side, lines in zip(sides, (lattice.columns, lattice.rows), strict=True):
+        assert -1e-6 < side / lattice.unit - (lines - 1) < 1.0
+
+
+def test_a_room_that_is_turned_keeps_its_unit():
+    room = shapely.affinity.rotate(shapely.box(0, 0, 100, 100), 33)
+    assert make_lattice(room.bounds, 100, room.area).unit == pytest.approx(1.0)
+
+
+def test_nodes_outside_a_turned_room_do_not_exist():
+    room = shapely.affinity.rotate(shapely.box(0, 0, 10, 10), 33)
+    lab = laboratory(scene_of(room=room, ends=((5, 5), (6, 6))), resolution=20)
+    lattice, places = lab.problem.lattice, lab.problem.places
+    x = lattice.x0 + lattice.unit * (places % lattice.columns)
+    y = lattice.y0 + lattice.unit * (places // lattice.columns)
+    assert shapely.intersects_xy(room, x, y).all()
+    assert len(places) == pytest.approx(400, abs=40)
+    assert len(places) < lattice.columns * lattice.rows
+    drawn = {gene for i in range(10) for gene in lab.genes(i)}
+    assert drawn <= set(places.tolist())
+
+
+@pytest.mark.parametrize("bounds", [b for b in BOUNDS if b[2] - b[0] == b[3] - b[1]])
+@pytest.mark.parametrize("resolution", [2, 3, 7, 100])
+def test_the_lattice_of_a_square_room_ends_exactly_on_the_border(bounds, resolution):
     lattice = make_lattice(bounds, resolution)
     first, last = 0, (resolution + 1) ** 2 - 1
     corners = [node_x(lattice, first), node_y(lattice, first)]
@@ -56,10 +86,11 @@ def test_the_lattice_ends_exactly_on_the_border(bounds, resolution):
 
 
 def test_nodes_are_numbered_row_by_row_from_the_lower_left():
-    lattice = make_lattice((10.0, 20.0, 12.0, 26.0), 2)
-    places = [(node_x(lattice, n), node_y(lattice, n)) for n in range(9)]
-    assert places[:4] == [(10.0, 20.0), (11.0, 20.0), (12.0, 20.0), (10.0, 23.0)]
-    assert places[8] == (12.0, 26.0)
+    lattice = make_lattice((10.0, 20.0, 12.0, 28.0), 4)
+    places = [(node_x(lattice, n), node_y(lattice, n)) for n in range(27)]
+    assert (lattice.columns, lattice.rows) == (3, 9)
+    assert places[:4] == [(10.0, 20.0), (11.0, 20.0), (12.0, 20.0), (10.0, 21.0)]
+    assert places[26] == (12.0, 28.0)
 
 
 @given(st.integers(0, 100), st.integers(0, 100))
@@ -143,10 +174,10 @@ def test_contains_looks_at_intermediate_nodes_only():
 
 def test_a_node_is_put_where_its_number_says_and_forgetting_clears_its_flags():
     population = filled()
-    lattice = make_lattice((0.0, 0.0, 10.0, 5.0), 10)
+    lattice = make_lattice((0.0, 0.0, 10.0, 10.0), 10)
     set_node(population.nodes, 0, 2, 25, lattice)
     node = population.nodes[0, 2]
-    assert (node["gene"], node["x"], node["y"]) == (25, 3.0, 1.0)
+    assert (node["gene"], node["x"], node["y"]) == (25, 3.0, 2.0)
     forget(population.nodes, 0, 2, 3)
     assert population.nodes["settled"][0, 1:5].astype(bool).tolist() == [True, False, False, True]
     assert population.nodes["needed"][0, 1:5].astype(bool).tolist() == [True, False, False, True]

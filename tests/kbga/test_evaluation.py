@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from shapely import box
 from shapely.geometry import LineString, Polygon
 
+from kbga.counter import make_counter
 from kbga.encoding import GOAL, MAX_HITS, START, empty_population
 from kbga.evaluation import LEAST_DEPTH, escape_distance, evaluate_segment, is_free_segment
 from kbga.memory import empty_memory
@@ -33,7 +34,7 @@ def record(arrangement: Arrangement, ends: Ends, genes: tuple[int, int] = (START
     nodes = empty_population(1, 2).nodes
     nodes["gene"][0] = genes
     nodes["x"][0], nodes["y"][0] = ends[::2], ends[1::2]
-    evaluate_segment(nodes, 0, 0, arrangement.arrays, empty_memory(), np.zeros(1, np.int64))
+    evaluate_segment(nodes, 0, 0, arrangement.arrays, empty_memory(), make_counter())
     return nodes[0, 0]
 
 
@@ -312,9 +313,7 @@ def test_the_quick_test_agrees_with_evaluation_and_writes_the_same():
             nodes = empty_population(1, 2).nodes
             nodes["gene"][0] = genes
             nodes["x"][0], nodes["y"][0] = ends[::2], ends[1::2]
-            free = is_free_segment(
-                nodes, 0, 0, arrangement.arrays, empty_memory(), np.zeros(1, np.int64)
-            )
+            free = is_free_segment(nodes, 0, 0, arrangement.arrays, empty_memory(), make_counter())
             assert free == (full["depth"] == 0.0)
             if free:
                 assert nodes[0, 0].tolist()[:6] == full.tolist()[:6]

@@ -5,6 +5,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from kbga.counter import make_counter
 from kbga.encoding import empty_population
 from kbga.evaluation import LEAST_DEPTH, evaluate_segment, evaluate_within, is_free_segment
 from kbga.memory import (
@@ -31,7 +32,7 @@ class Bench:
     def __init__(self, arrays=WALL) -> None:
         self.arrays = arrays
         self.memory = empty_memory()
-        self.counter = np.zeros(1, np.int64)
+        self.counter = make_counter()
         self.nodes = empty_population(1, 2).nodes
 
     def put(self, ends, tail=7, head=8) -> None:

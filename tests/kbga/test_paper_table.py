@@ -10,11 +10,13 @@ from typing import Any
 import pytest
 
 import kbga
-from kbga import KBGA, KBGASettings
+from kbga import KBGA, KBGAPlusSettings, KBGASettings
 from kbga import operators as operators_package
 from tests.kbga.laboratory import scene_of
 
 SECTIONS = ["II-A", "II-B", "II-C", "II-D", "III", "V"]
+CHOICES = {"silent", "kbga", "plus"}
+"""Rows that are not the paper's: of both planners, of the paper's as we read it, and of ours."""
 
 
 @dataclass
@@ -57,6 +59,8 @@ def resolve(name: str) -> Any:
         found: Any = an_instance()
     elif head == "KBGASettings":
         found = KBGASettings()
+    elif head == "KBGAPlusSettings":
+        found = KBGAPlusSettings()
     else:
         depth = len(rest)
         while True:
@@ -90,10 +94,10 @@ def test_every_row_says_something_and_names_who_does_it():
 
 def test_the_sections_come_in_the_papers_order_and_a_choice_follows_its_sentence():
     sections = [row.section for row in rows()]
-    assert set(sections) == {*SECTIONS, "ours"}
-    papers = [SECTIONS.index(s) for s in sections if s != "ours"]
+    assert set(sections) == {*SECTIONS, *CHOICES}
+    papers = [SECTIONS.index(s) for s in sections if s not in CHOICES]
     assert papers == sorted(papers)
-    assert sections[0] != "ours"
+    assert sections[0] in SECTIONS
 
 
 @pytest.mark.parametrize("what", ["Eq. (1)", "Eq. (2)", *(f"Fig. 3({c})" for c in "abcd")])
@@ -106,17 +110,25 @@ def test_every_setting_is_named(name):
     assert f"KBGASettings.{name}" in NAMES
 
 
-def test_a_setting_that_is_called_ours_has_a_row_that_is_ours():
-    # One line of the class's docstring is one setting, with "(ours" in it or in its next lines.
+def test_a_setting_that_is_called_a_reading_has_a_row_that_is_no_sentence_of_the_paper():
+    # One line of the class's docstring is one setting, with "reading" in it or in its next lines.
     called: dict[str, str] = defaultdict(str)
     setting = ""
     for line in (KBGASettings.__doc__ or "").splitlines():
         head, colon, _ = line.strip().partition(" : ")
         setting = head if colon and hasattr(KBGASettings, head) else setting
         called[setting] += line
-    ours = {name for name, text in called.items() if "(ours" in text and name}
-    rows_of_ours = {name for row in rows() if row.section == "ours" for name in row.names}
-    assert {f"KBGASettings.{name}" for name in ours} <= rows_of_ours
+    readings = {name for name, text in called.items() if "reading" in text and name}
+    choices = {name for row in rows() if row.section in CHOICES for name in row.names}
+    assert {f"KBGASettings.{name}" for name in readings} <= choices
+
+
+def test_what_kbga_plus_differs_in_has_a_row_that_is_its_own():
+    own = {name for row in rows() if row.section == "plus" for name in row.names}
+    plus, paper = KBGAPlusSettings(), KBGASettings()
+    differs = [f.name for f in fields(paper) if getattr(plus, f.name) != getattr(paper, f.name)]
+    for name in differs:
+        assert {f"KBGASettings.{name}", f"KBGAPlusSettings.{name}"} & own, name
 
 
 @pytest.mark.parametrize(

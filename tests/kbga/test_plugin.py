@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import shapely
 
-from kbga.plugin import KBGAPlanner
+from kbga.plugin import KBGAPlanner, KBGAPlusPlanner
 from kbga.settings import KBGASettings
 from suite.planner import Budget, Plan, PlanStatus, Recorder
 from suite.plugins import make_settings, settings_as_dict
@@ -82,7 +82,7 @@ from pathlib import Path
 import sys
 import numpy as np
 from numba.core.registry import CPUDispatcher
-from kbga.plugin import KBGAPlanner
+from kbga.plugin import KBGAPlanner, KBGAPlusPlanner
 from suite.planner import Budget, Recorder
 from suite.scenes.catalogue import load_scene
 
@@ -134,14 +134,24 @@ def test_a_budget_of_generations_is_kept_exactly(generations):
     assert plan(CLOSED, Budget(generations=generations)).generations == generations
 
 
-def test_a_budget_of_checks_ends_the_run_after_the_generation_that_passed_it():
-    recorder = Recorder()
-    budget = Budget(checks=100)
-    made = plan(CLOSED, budget, recorder)
-    *before, last = [row["checks"] for row in recorder.trace]
-    assert last >= 100
-    assert all(checks < 100 for checks in before)
-    assert made.checks == last
+@pytest.mark.parametrize("checks", [1, 40, 100, 333])
+@pytest.mark.parametrize("planner", [KBGAPlanner, KBGAPlusPlanner])
+def test_a_budget_of_checks_is_kept_to_the_last_one(planner, checks):
+    made = planner().plan(
+        CLOSED, CLOSED.query(), Budget(checks=checks), np.random.default_rng(1), Recorder()
+    )
+    assert made.checks == checks
+    assert 0 < (made.computed_checks or 0) <= checks
+
+
+def test_a_run_of_few_checks_begins_as_the_run_of_many_does():
+    few, many = Recorder(), Recorder()
+    plan(budget=Budget(checks=150), recorder=few)
+    made = plan(recorder=many)
+    assert (made.checks or 0) > 150
+    both = [(i.cost, i.checks) for i in many.improvements if (i.checks or 0) < 150]
+    assert both
+    assert [(i.cost, i.checks) for i in few.improvements][: len(both)] == both
 
 
 def test_a_budget_of_time_that_is_over_at_once_leaves_the_first_population():
@@ -157,6 +167,14 @@ def test_a_budget_of_time_ends_a_run_that_would_go_on():
     assert recorder.wall_s() >= 0.05
 
 
+def test_a_budget_of_cpu_time_ends_a_run_that_would_go_on():
+    endless = KBGASettings(population_size=12, resolution=20, max_generations=10**9)
+    recorder = Recorder()
+    made = plan(CLOSED, Budget(cpu_s=0.05), recorder, endless)
+    assert 0 < (made.generations or 0) < 10**9
+    assert recorder.cpu_s() >= 0.05
+
+
 def test_an_ample_budget_changes_nothing():
     ample = Budget(wall_s=1e6, generations=10**6, checks=10**12)
     assert np.array_equal(plan(budget=ample).path, plan().path)
@@ -164,7 +182,7 @@ def test_an_ample_budget_changes_nothing():
 
 def test_it_keeps_the_budgets_that_it_says_it_keeps():
     assert KBGAPlanner.abilities.anytime
-    assert KBGAPlanner.abilities.budgets == {"wall_s", "generations", "checks"}
+    assert KBGAPlanner.abilities.budgets == {"wall_s", "cpu_s", "generations", "checks"}
     assert not KBGAPlanner.abilities.exact
 
 

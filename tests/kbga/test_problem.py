@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 from kbga.algorithm import KBGA
 from kbga.problem import MOST_NEAR, Problem, is_known_usable, is_usable, make_problem
-from kbga.settings import KBGASettings
+from kbga.settings import KBGAPlusSettings
 from suite.geometry.arrangement import arrange
+from suite.geometry.kernels import FIRST_EDGE, LAST_EDGE
 from suite.scene import Scene
 from tests.kbga.laboratory import all_near_nodes, near_nodes, random_scene, scene_of
 from tests.suite.geometry.lattice import counts, pinches, random_solid
@@ -21,8 +22,8 @@ def problem_of(scene: Scene, resolution: int) -> Problem:
 def places(problem: Problem, nodes: list[int]) -> np.ndarray:
     lattice = problem.lattice
     number = np.array(nodes, dtype=int)
-    x = lattice.x0 + lattice.dx * (number % lattice.side)
-    y = lattice.y0 + lattice.dy * (number // lattice.side)
+    x = lattice.x0 + lattice.unit * (number % lattice.columns)
+    y = lattice.y0 + lattice.unit * (number // lattice.columns)
     return np.column_stack([x, y])
 
 
@@ -37,7 +38,7 @@ def test_nodes_near_an_obstacle_are_free_and_next_to_its_corners(seed, resolutio
         nodes = near_nodes(problem, group)
         assert len(set(nodes)) == len(nodes)
         corners = scene.arrangement.corners[scene.arrangement.corner_group == group, :2]
-        cell = np.array([problem.lattice.dx, problem.lattice.dy])
+        cell = problem.lattice.unit
         for place in places(problem, nodes):
             assert not shapely.contains_xy(solid, *place)
             assert tuple(place) not in bad
@@ -57,6 +58,40 @@ def test_every_corner_on_a_free_lattice_node_has_that_node(seed):
     ):
         if x % 1 == 0 and y % 1 == 0 and (x, y) not in bad:
             assert int((y - ymin) * (side + 1) + x - xmin) in near_nodes(problem, int(group))
+
+
+@settings(max_examples=counts(60, 5))
+@given(st.integers(0, 2**32), st.sampled_from([2, 3, 5, 8, 16]), st.sampled_from([1, 2, 4]))
+def test_with_a_reach_the_nodes_near_an_obstacle_are_all_free_ones_so_near_to_its_boundary(
+    seed, resolution, reach
+):
+    scene = random_scene(np.random.default_rng(seed))
+    problem = make_problem(
+        scene.arrangement, scene.bounds, resolution, room=scene.workspace, reach=reach
+    )
+    lattice = problem.lattice
+    everywhere = places(problem, list(range(lattice.columns * lattice.rows)))
+    usable = [is_usable(n, problem.arrays, lattice) for n in range(len(everywhere))]
+    for group in range(len(problem.arrays.groups)):
+        first, last = problem.arrays.groups[group, [FIRST_EDGE, LAST_EDGE]].astype(int)
+        edges = problem.arrays.boundary[first:last].reshape(-1, 2, 2)
+        away = (
+            shapely.distance(
+                shapely.points(everywhere), shapely.multilinestrings(shapely.linestrings(edges))
+            )
+            if len(edges)
+            else np.full(len(everywhere), np.inf)
+        )
+        found = near_nodes(problem, group)
+        assert len(set(found)) == len(found)
+        slack = 1e-9
+        sure = {
+            n for n in range(len(usable)) if usable[n] and away[n] < reach * lattice.unit - slack
+        }
+        may = {
+            n for n in range(len(usable)) if usable[n] and away[n] < reach * lattice.unit + slack
+        }
+        assert sure <= set(found) <= may
 
 
 def test_without_obstacles_there_is_nothing_to_be_near_to():
@@ -99,7 +134,7 @@ def test_the_near_nodes_of_a_group_have_room_beside_those_of_the_next(
     groups = len(problem.near_count)
     found = {int(g): near_nodes(problem, int(g)) for g in rng.permutation(groups)}
     for group in range(groups):
-        corners = problem.near_start[group + 1] - problem.near_start[group]
+        corners = problem.corner_start[group + 1] - problem.corner_start[group]
         assert len(found[group]) <= MOST_NEAR * corners
         assert near_nodes(problem, group) == found[group], "asked again, it says the same"
 
@@ -118,7 +153,9 @@ def test_where_no_node_is_free_there_is_none_near_and_a_run_goes_on_all_the_same
     problem = problem_of(scene, 2)
     assert not any(is_usable(n, problem.arrays, problem.lattice) for n in range(9))
     assert all_near_nodes(problem) == []
-    chosen = KBGASettings(resolution=2, population_size=6, max_generations=5, informed_share=0.5)
+    chosen = KBGAPlusSettings(
+        resolution=2, population_size=6, max_generations=5, informed_share=0.5
+    )
     ga = KBGA(scene, settings=chosen, rng=0)
     assert ga.run() is None
     assert ga.generation == 5
@@ -128,7 +165,7 @@ def test_where_no_node_is_free_there_is_none_near_and_a_run_goes_on_all_the_same
 @given(st.integers(0, 2**32))
 def test_what_is_known_of_a_node_is_what_is_found_of_it_asked_once_or_twice(seed):
     problem = problem_of(random_scene(np.random.default_rng(seed)), 8)
-    for node in range(81):
+    for node in range(len(problem.usable)):
         usable = is_usable(node, problem.arrays, problem.lattice)
         assert is_known_usable(node, problem) == usable
         assert is_known_usable(node, problem) == usable

@@ -8,7 +8,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kbga import KBGA, KBGASettings, evaluation, make_scene
+from kbga import KBGA, KBGAPlusSettings, KBGASettings, evaluation, make_scene
 from kbga.encoding import Population
 from kbga.evaluation import sum_up
 from kbga.memory import NOBODY
@@ -76,10 +76,10 @@ def test_a_child_has_the_records_of_its_parents_and_one_new_segment_at_most(seed
 def test_no_check_is_made_twice_in_a_run(scene_name):
     scene = load_scene(scene_name)
     for seed in range(counts(5, 1)):
-        ga = KBGA(scene, settings=KBGASettings(max_generations=counts(500, 2)), rng=seed)
+        ga = KBGA(scene, settings=KBGAPlusSettings(max_generations=counts(500, 2)), rng=seed)
         ga.run()
         # Each check is remembered: were one made twice, there would be more of them than segments.
-        assert ga.checks == (ga._problem.memory.segments["key"] != NOBODY).sum()
+        assert ga.computed_checks == (ga._problem.memory.segments["key"] != NOBODY).sum()
 
 
 class Listener:
@@ -105,7 +105,7 @@ def test_the_counter_counts_every_check_and_what_is_interrupted_goes_on(monkeypa
     scene = make_scene("walls", shapely.box(0, 0, 10, 10), walls, ((1.01, 1.03), (9.07, 9.01)))
     ga = KBGA(scene, None, KBGASettings(population_size=12, resolution=20, max_generations=8), seed)
     ga.run()
-    assert ga.checks == len(listener.rows)
+    assert ga.computed_checks == len(listener.rows)
     for rows in listener.rows.values():
         assert rows[0] == 0
         # Another look begins where the last one ended, at the part that it met, or after its group.

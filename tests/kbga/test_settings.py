@@ -1,11 +1,13 @@
 """Settings refuse what makes no sense, and say which and why."""
 
+import re
 from dataclasses import FrozenInstanceError, fields
 
 import numpy as np
 import pytest
 
-from kbga.settings import FINEST, KBGASettings
+from kbga.encoding import FINEST
+from kbga.settings import KBGAPlusSettings, KBGASettings
 
 WHOLE = {
     "population_size": 2,
@@ -13,8 +15,9 @@ WHOLE = {
     "max_nodes": 2,
     "initial_nodes": 1,
     "tournament_size": 1,
-    "repair_candidates": 1,
-    "improvement_radius": 1,
+    "repair_candidates": 0,
+    "repair_reach": 0,
+    "improvement_radius": 0,
     "rounds": 1,
     "max_generations": 1,
     "stagnation": 1,
@@ -30,6 +33,26 @@ def test_the_defaults_are_those_of_the_paper():
     assert chosen.mutation_probability == 0.2
     others = [getattr(chosen, p) for p in PROBABILITIES if "mutation" not in p]
     assert others == [0.9] * 4
+
+
+def test_kbga_plus_differs_from_the_paper_in_what_its_docstring_lists_and_in_nothing_else():
+    plus, paper = KBGAPlusSettings(), KBGASettings()
+    own = [f.name for f in fields(paper) if getattr(plus, f.name) != getattr(paper, f.name)]
+    described = re.findall(r"^    (\w+) : ", KBGAPlusSettings.__doc__ or "", re.MULTILINE)
+    assert own == described
+
+
+@pytest.mark.parametrize("name", ["repair_must_help", "one_operator", "remembers"])
+def test_a_choice_of_yes_or_no_takes_nothing_else(name):
+    assert getattr(KBGASettings(**{name: True}), name) is True
+    for bad in (1, "yes", None):
+        with pytest.raises(ValueError, match=f"^{name} is {bad!r}; it must be true or false$"):
+            KBGASettings(**{name: bad})
+
+
+def test_what_generations_needed_counts_is_one_of_two_words():
+    with pytest.raises(ValueError, match="it must be 'best' or 'stop'"):
+        KBGASettings(generations_counted="all")
 
 
 @pytest.mark.parametrize("name", WHOLE)

@@ -95,7 +95,10 @@ def measure_rows(rows: int, jobs: int, folder: Path) -> dict[str, Any]:
     """A matrix of a planner that takes no time, and the tables of its store, by the command."""
     matrix, store = _matrix(rows, folder), folder / "rows.db"
     environment = {**os.environ, "PYTHONPATH": _with_path(folder)}
-    run = _command(["run", str(matrix), "--store", str(store), "--jobs", str(jobs)], environment)
+    run = _command(
+        ["run", str(matrix), "--store", str(store), "--jobs", str(jobs), "--patience", "0"],
+        environment,
+    )
     tables = _command(["tables", str(store)], environment)
     found = read_runs(store)
     assert len(found) == rows

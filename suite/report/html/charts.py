@@ -13,6 +13,7 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 
 from suite.report.anytime import Array, Steps, first_within, only
+from suite.report.clock import WALL, by_the_clock
 from suite.report.convergence_figures import CLOCKS, counted_groups, gap_bands, grid_over
 from suite.report.html.appearance import PLANNERS_AT_MOST, Appearance, appearance
 from suite.report.html.scenes import SCENES_AT_MOST
@@ -106,8 +107,10 @@ def ecdf_chart(steps: Steps, planners: dict[str, int]) -> Chart | None:
         if not len(finite):
             continue
         grid = np.geomspace(0.8 * finite.min(), max(1.25 * finite.max(), 10 * finite.min()), POINTS)
+        timed = by_the_clock(steps.runs) if clock == WALL else np.ones(len(steps.runs), bool)
         for (scene, planner), columns in groups.items():
-            trace = _ecdf_trace(planner, appearance(planners[planner]), grid, reached[:, columns])
+            mine = reached[:, columns[timed[columns]]]
+            trace = _ecdf_trace(planner, appearance(planners[planner]), grid, mine)
             if trace is not None:
                 lines.append({"scene": scene, "clock": clock, "planner": planner, "trace": trace})
         layouts[clock] = _share_layout(label, grid)

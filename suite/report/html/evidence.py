@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from suite.planner import Snapshot
 from suite.report.anytime import Steps, steps_of
+from suite.report.clock import fair
 from suite.report.newest import newest
 from suite.report.panels import numbered
 from suite.report.simulated import is_simulated
@@ -61,7 +62,7 @@ class Evidence:
     @property
     def driven(self) -> pd.DataFrame:
         """The current runs that were simulated."""
-        return self.current[is_simulated(self.current)]
+        return fair(self.current[is_simulated(self.current)])
 
 
 def read_evidence(store: Path, reference: str | None = None) -> Evidence:
@@ -86,7 +87,7 @@ def read_evidence(store: Path, reference: str | None = None) -> Evidence:
         store=store,
         runs=runs,
         current=current,
-        steps=steps_of(current[~is_simulated(current)], events),
+        steps=steps_of(fair(current[~is_simulated(current)]), events),
         planners=numbered(current["variant"]),
         tables=_tables(store, runs, events, reference),
         paths=read_paths(store),

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 import pandas as pd
 
+from suite.report.clock import by_the_clock
 from suite.report.html.evidence import Evidence
 from suite.report.html.scenes import ScenePicture
 from suite.report.table import Table
@@ -100,8 +101,10 @@ def _not_drawn(pictures: list[ScenePicture]) -> _Row:
 
 
 def _contended(evidence: Evidence) -> _Row:
-    runs = evidence.current[evidence.current["contended"].fillna(value=False).astype(bool)]
-    follows = "they waited for the processor: their wall times are longer than on an idle machine"
+    runs = evidence.current[~by_the_clock(evidence.current)]
+    follows = (
+        "they had no core for themselves: no table compares their times, nor what the clock ended"
+    )
     return "runs whose wall time can't be relied on", len(runs), _by(runs["variant"]), follows
 
 

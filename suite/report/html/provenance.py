@@ -11,7 +11,7 @@ from suite.report.table import Table
 
 _VARIANT = [
     "variant", "planner", "distribution", "version", "settings", "cold",
-    "budget_wall_s", "budget_generations", "budget_checks",
+    "budget_wall_s", "budget_cpu_s", "budget_generations", "budget_checks",
 ]  # fmt: skip
 
 
@@ -43,6 +43,7 @@ def _budget(row: Mapping[Any, Any]) -> str:
         f"{row[column]:g} {unit}"
         for column, unit in (
             ("budget_wall_s", "s"),
+            ("budget_cpu_s", "s of CPU time"),
             ("budget_generations", "generations"),
             ("budget_checks", "checks"),
         )

@@ -55,6 +55,32 @@ def test_a_node_comes_to_rest_at_the_corner_of_the_obstacle():
         check(lab)
 
 
+@settings(max_examples=counts(60, 6))
+@given(st.integers(0, 2**32), st.sampled_from([5, 10, 30]))
+def test_a_radius_of_0_is_one_step_to_the_best_of_the_eight_neighbours(seed, resolution):
+    scene = random_scene(np.random.default_rng(seed))
+    lab = laboratory(scene, seed, improvement_radius=0, resolution=resolution, remembers=False)
+    for i in range(10):
+        before = lab.genes(i)
+        known = lab.population.nodes[i].copy()
+        if not lab.improve(i):
+            assert lab.genes(i) == before
+            continue
+        (k,) = (k for k, (a, b) in enumerate(zip(before, lab.genes(i), strict=True), 1) if a != b)
+        taken = lab.genes(i)[k - 1]
+        assert taken in neighbours(lab, before[k - 1])
+        lengths = {
+            gene: float(detour(lab, known[k - 1], gene, known[k + 1])["length"].sum())
+            for gene in neighbours(lab, before[k - 1])
+            if gene not in before
+            and is_usable(gene, lab.problem.arrays, lab.problem.lattice)
+            and (detour(lab, known[k - 1], gene, known[k + 1])["depth"] == 0.0).all()
+        }
+        assert lengths[taken] == pytest.approx(min(lengths.values()))
+        assert lab.population.nodes["settled"][i].sum() == 0, "nothing is remembered"
+    check(lab)
+
+
 def test_an_infeasible_path_is_left_alone():
     lab = with_paths(laboratory(scene_of(WALL, ends=ENDS)), [(5, 5)])
     checks = int(lab.counter[0])

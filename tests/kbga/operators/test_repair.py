@@ -120,3 +120,32 @@ def test_a_slip_through_a_pinch_point_has_no_obstacle_to_be_repaired_at():
     lab = with_paths(laboratory(crossed), [])
     assert not lab.is_feasible(0)
     assert not lab.repair(0)
+
+
+@settings(max_examples=counts(60, 8))
+@given(st.integers(0, 2**32), st.sampled_from([0.1, 3.0, 100.0]))
+def test_a_repair_that_must_help_never_makes_a_path_dearer(seed, penalty):
+    scene = random_scene(np.random.default_rng(seed))
+    lab = laboratory(scene, seed, resolution=12, penalty=penalty, repair_must_help=True)
+    for i in range(10):
+        cost = lab.cost(i)
+        if lab.repair(i):
+            assert lab.cost(i) < cost
+        else:
+            assert lab.cost(i) == cost
+    check(lab)
+
+
+@settings(max_examples=counts(40, 6))
+@given(st.integers(0, 2**32), st.sampled_from([1, 2, 4]), st.sampled_from([3, 8, 16]))
+def test_with_a_reach_it_takes_a_free_node_so_near_to_what_it_hits(seed, reach, resolution):
+    scene = random_scene(np.random.default_rng(seed))
+    lab = laboratory(scene, seed, resolution=resolution, repair_reach=reach, repair_candidates=0)
+    for i in range(10):
+        before, known = lab.genes(i), lab.population.nodes[i].copy()
+        if lab.repair(i):
+            (gene,) = set(lab.genes(i)) - set(before)
+            k = lab.genes(i).index(gene)
+            hits = known["hits"][k][: known["hit_count"][k]].tolist()
+            assert any(gene in near_nodes(lab.problem, g) for g in hits)
+    check(lab)

@@ -18,7 +18,7 @@ from suite.geometry.kernels import first_collision
 from suite.planner import Abilities, Plan, Planner, PlanStatus
 from suite.scene import make_scene
 
-ALL_BUDGETS = frozenset({"wall_s", "generations", "checks"})
+ALL_BUDGETS = frozenset({"wall_s", "cpu_s", "generations", "checks"})
 
 
 @dataclass(frozen=True)
@@ -58,6 +58,8 @@ class Detours(Planner):
 
     def is_over(self, number, budget, recorder):
         if budget.wall_s is not None and recorder.wall_s() >= budget.wall_s:
+            return True
+        if budget.cpu_s is not None and recorder.cpu_s() >= budget.cpu_s:
             return True
         return budget.checks is not None and number >= budget.checks
 
@@ -585,6 +587,35 @@ class IgnoresChecks(ChangesTheResult):
 
     def spoilt(self, plan, scene, query):
         return replace(plan, checks=100_000)
+
+
+class OverrunsChecksByALittle(ChangesTheResult):
+    """keeps-checks"""
+
+    name = "overruns-checks-by-a-little"
+
+    def spoilt(self, plan, scene, query):
+        return replace(plan, checks=310)
+
+
+class ComputesMoreThanIsAsked(ChangesTheResult):
+    """returns-a-plan"""
+
+    name = "computes-more-than-is-asked"
+
+    def spoilt(self, plan, scene, query):
+        return replace(plan, computed_checks=plan.checks + 1)
+
+
+class IgnoresCpuTime(Detours):
+    """keeps-cpu-time"""
+
+    name = "ignores-cpu-time"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        while budget.cpu_s is not None and recorder.cpu_s() < 1.0:
+            pass
+        return super().plan(scene, query, budget, rng, recorder)
 
 
 class IgnoresTheClock(Detours):

@@ -107,6 +107,26 @@ class Sleeper(_Base):
         time.sleep(0.15)
 
 
+@dataclass(frozen=True)
+class DrowsySettings:
+    folder: str = "."
+
+
+class Drowsy(_Base):
+    """Sleeps when it is run first, as if the machine were busy, and is awake from then on."""
+
+    name = "drowsy"
+    Settings = DrowsySettings
+    abilities = Abilities(budgets=frozenset({"wall_s", "cpu_s"}))
+
+    def plan(self, scene, query, budget, rng, recorder):
+        mark = Path(self.settings.folder) / f"{rng.integers(10**9)}.mark"
+        if not mark.exists():
+            time.sleep(0.1)
+            mark.touch()
+        return Plan(PlanStatus.SOLVED, self.path(scene, query), checks=7, computed_checks=3)
+
+
 class Raises(_Base):
     name = "raises"
 

@@ -1,5 +1,7 @@
 """Held to published worked examples, to scipy, and to what must hold of any scores."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -14,8 +16,11 @@ from suite.report.statistics import (
     holm,
     interquartile_mean,
     mann_whitney,
+    nemenyi,
     probability_better,
     probability_interval,
+    sign_test,
+    signed_rank,
     smallest_p,
 )
 
@@ -211,3 +216,71 @@ def test_an_interval_reaches_to_infinity_where_failures_may_be_a_quarter():
     found = bootstrap(sample, interquartile_mean, np.random.default_rng(0))
     assert np.isfinite([found.low, found.estimate]).all()
     assert np.isinf(found.high)
+
+
+def test_the_sign_test_counts_signs():
+    assert sign_test(np.array([1.0, 2.0, 3.0, 4.0]), 2.5) == 1.0
+    assert sign_test(np.array([2.0] * 9), 2.0) == 1.0
+    # A tie says nothing.
+    one, other = np.arange(1.0, 7.0), np.arange(0.0, 7.0)
+    assert sign_test(one, 0.0) == sign_test(other, 0.0) == 2 / 2**6
+    assert smallest_p(0, 6) == smallest_p(6, 0) == 2 / 2**6
+
+
+@pytest.mark.parametrize("count", [5, 8, 20])
+def test_wilcoxons_test_without_ties_is_scipys_exact_one(count):
+    differences = np.random.default_rng(count).normal(0.3, 1.0, count)
+    exact = stats.wilcoxon(differences, method="exact").pvalue
+    assert signed_rank(differences) == pytest.approx(exact)
+
+
+@given(arrays(np.float64, 7, elements=st.sampled_from([-2.0, -1.0, 0.0, 1.0, 2.0, np.inf])))
+def test_wilcoxons_test_with_ties_counts_all_signs(differences):
+    there = differences[differences != 0.0]
+    ranks = stats.rankdata(np.abs(there))
+    sums = np.array([np.dot(signs, ranks) for signs in product((0, 1), repeat=len(there))])
+    found = ranks[there > 0].sum()
+    wanted = 2 * min((sums <= found).mean(), (sums >= found).mean()) if len(there) else 1.0
+    assert signed_rank(differences) == pytest.approx(min(1.0, wanted))
+
+
+def test_demsars_example_of_wilcoxons_test():
+    # Demsar (2006), Table 2: C4.5 with and without a tuned parameter m; he has R = 12 and p < 0.05.
+    plain = [
+        0.763,
+        0.599,
+        0.954,
+        0.628,
+        0.882,
+        0.936,
+        0.661,
+        0.583,
+        0.775,
+        1.0,
+        0.94,
+        0.619,
+        0.972,
+        0.957,
+    ]
+    tuned = [
+        0.768,
+        0.591,
+        0.971,
+        0.661,
+        0.888,
+        0.931,
+        0.668,
+        0.583,
+        0.838,
+        1.0,
+        0.962,
+        0.666,
+        0.981,
+        0.978,
+    ]
+    assert signed_rank(np.array(tuned) - np.array(plain)) < 0.05
+
+
+def test_nemenyis_p_is_5_per_cent_at_the_critical_difference():
+    assert nemenyi(critical_difference(4, 14), 4, 14) == pytest.approx(0.05)
+    assert nemenyi(0.0, 4, 14) == 1.0

@@ -128,3 +128,43 @@ def test_tables_are_fit_for_a_paper():
     for table in tables(*records):
         assert r"\begin{tabular}" in render(table, Format.LATEX)
         assert render(table, Format.MARKDOWN).startswith("### ")
+
+
+def alike(planner, cost, times=4, scene="zigzag"):
+    """Runs that came out the same."""
+    return ending(planner, [cost] * times, scene)
+
+
+def test_a_planner_that_draws_nothing_counts_once_and_has_no_interval():
+    table = tables(*ending("kbga", [101.0, 102.0, 103.0, 104.0]), *alike("grid", 101.5))[0]
+    frame = table.frame.set_index("planner")
+    assert frame["runs"].to_dict() == {"kbga": 4, "grid": 1}
+    assert frame.loc["grid", "gap IQM (%)"] == pytest.approx(1.5)
+    assert np.isnan(frame.loc["grid", "gap IQM (%) low"])
+    assert frame.loc["grid", "P(kbga better)"] == 0.25
+    assert frame.loc["grid", "P(kbga better) low"] < 0.25 < frame.loc["grid", "P(kbga better) high"]
+    assert "count once: grid" in table.note
+
+
+def test_its_one_result_is_compared_by_a_sign_test_however_often_it_was_run():
+    def p_value(times):
+        costs = [102.0 + i for i in range(6)]
+        rows = tables(*ending("kbga", costs), *alike("grid", 101.0, times))[-1]
+        assert "a sign test's" in rows.note
+        return rows.frame["p"].tolist()
+
+    # All 6 above it: twice one of 64.
+    assert p_value(2) == p_value(30) == pytest.approx([2 / 64])
+
+
+def test_two_planners_that_draw_nothing_need_no_test():
+    records = [*ending("kbga", [101.0, 102.0, 103.0]), *alike("grid", 100.5), *alike("exact", 100)]
+    found = statistics_tables(steps(*records), np.random.default_rng(0), "exact")
+    rows = found[-1].frame.set_index("planner")
+    assert np.isnan(rows.loc["grid", ["p", "Holm's p"]].astype(float)).all()
+    # Holm's factor is the number of tests: one.
+    assert rows.loc["kbga", "Holm's p"] == rows.loc["kbga", "p"] == pytest.approx(0.25)
+    assert "nan" not in render(found[-2], Format.MARKDOWN)
+    overall = found[0].frame.set_index("planner")
+    assert np.isnan(overall.loc["grid", "P(exact better) low"])
+    assert "with a constant against 3 and 1 comparison" in found[-1].note

@@ -1,0 +1,185 @@
+"""A scene turned, scaled and shifted as a whole, in which all that was closed stays closed.
+
+What touches must go on touching, though the moved vertices are rounded: a vertex that lay on the
+edge of a border at the grid's precision would lie a grid's width beside it, and leave a slit. So
+first each outline gets a vertex wherever another one touches it. Then what touches does so in
+common vertices, and those are moved and rounded alike. Metres.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry import LineString, Polygon
+
+from suite.dynamics import Dynamics, Removal, make_motion
+from suite.errors import SceneError
+from suite.geometry.tolerances import GRID, GRID_DECIMALS
+from suite.scene import Obstacle, Scene, make_scene
+from suite.scenes.modifiers import MARK, Modifiers
+
+Points = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Similarity:
+    """The map p -> centre + linear (p - centre) + shift of the plane.
+
+    linear : (2, 2) float64, a rotation times a scale.
+    centre, shift : (2,) float64, metres.
+    """
+
+    linear: Points
+    centre: Points
+    shift: Points
+
+    def points(self, xy: Points) -> Points:
+        """Move points (n, 2), metres, onto the grid of scenes."""
+        return _on_grid((xy - self.centre) @ self.linear.T + self.centre + self.shift)
+
+    def vectors(self, xy: Points) -> Points:
+        """Turn and scale vectors (n, 2), metres."""
+        return _on_grid(xy @ self.linear.T)
+
+
+def _on_grid(xy: Points) -> Points:
+    # -0.0 and 0.0 are one place; hashes of scenes must agree
+    return np.round(xy, GRID_DECIMALS) + 0.0
+
+
+def make_similarity(modifiers: Modifiers, centre: Points) -> Similarity:
+    """The map that modifiers stand for, about a centre (2,), metres."""
+    angle = np.radians(modifiers.turn)
+    cos, sin = np.cos(angle), np.sin(angle)
+    linear = modifiers.scale * np.array([[cos, -sin], [sin, cos]])
+    return Similarity(linear, centre, np.array(modifiers.shift))
+
+
+def modified(scene: Scene, modifiers: Modifiers, *, inflate: float = 0.0) -> Scene:
+    """A scene with its workspace, obstacles, starts and goals moved as one.
+
+    Parameters
+    ----------
+    scene : Scene
+        Not yet inflated.
+    modifiers : Modifiers
+    inflate : float
+        Radius of the robot, metres; it is not scaled. See :func:`suite.scene.make_scene`.
+
+    Returns
+    -------
+    Scene
+        Named as the scene with its modifiers behind it. Of its properties the optima are left out,
+        for they were computed of other coordinates; if it is scaled, the paper's best cost too.
+
+    Raises
+    ------
+    SceneError
+        If it can't be moved: its coordinates get too large or too fine, or it is dynamic and would
+        be scaled.
+
+    Examples
+    --------
+    >>> from suite.scenes.modifiers import parse_modifiers
+    >>> box = make_scene("box", shapely.box(0, 0, 8, 4), [], ((1, 1), (7, 1)))
+    >>> turned = modified(box, parse_modifiers("turn=90", "box"))
+    >>> turned.name, turned.bounds, turned.query().goal.tolist()
+    ('box@turn=90', (2.0, -2.0, 6.0, 6.0), [5.0, 5.0])
+    """
+    name = f"{scene.name}{MARK}{modifiers.text}"
+    if scene.is_dynamic and modifiers.scale != 1.0:
+        raise SceneError(
+            f"{name}: a dynamic scene can't be scaled, for speeds and ranges would have to be too. "
+            "Take turn, shift and twin."
+        )
+    xmin, ymin, xmax, ymax = scene.bounds
+    move = make_similarity(modifiers, np.array([(xmin + xmax) / 2.0, (ymin + ymax) / 2.0]))
+    room, *polygons = (
+        shapely.transform(polygon, move.points) for polygon in _with_contacts(scene)
+    )
+    return make_scene(
+        name,
+        room,
+        [
+            Obstacle(o.name, polygon, _moved_dynamics(o.dynamics, move))
+            for o, polygon in zip(scene.obstacles, polygons, strict=True)
+        ],
+        {q.name: (move.points(q.start), move.points(q.goal)) for q in scene.queries},
+        properties=_moved_properties(scene, modifiers, move),
+        path=scene.path,
+        inflate=inflate,
+    )
+
+
+def _with_contacts(scene: Scene) -> list[Polygon]:
+    """Workspace and obstacles on the grid, with vertices where others or ends touch them."""
+    polygons = [scene.workspace, *(o.polygon for o in scene.obstacles)]
+    drawn = [shapely.transform(polygon, _on_grid) for polygon in polygons]
+    ends = [point for query in scene.queries for point in (query.start, query.goal)]
+    places = np.unique(np.vstack([shapely.get_coordinates(drawn), *ends]), axis=0)
+    tree = shapely.STRtree(shapely.points(places))
+    return [
+        Polygon(
+            _with_vertices(polygon, polygon.exterior, places, tree),
+            [_with_vertices(polygon, hole, places, tree) for hole in polygon.interiors],
+        )
+        for polygon in drawn
+    ]
+
+
+def _with_vertices(
+    polygon: Polygon, ring: shapely.LinearRing, places: Points, tree: shapely.STRtree
+) -> Points:
+    """A ring of a polygon with those places as vertices that lie on its edges."""
+    corners = shapely.get_coordinates(ring)
+    edges = [LineString(corners[i : i + 2]) for i in range(len(corners) - 1)]
+    found = tree.query(edges, predicate="dwithin", distance=GRID).T.tolist()
+    own = {tuple(corner) for corner in shapely.get_coordinates(polygon).tolist()}
+    between: list[list[Points]] = [[] for _ in edges]
+    for edge, place in found:
+        # Its own would fold a ring that comes so near to itself.
+        if tuple(places[place].tolist()) not in own and _is_between(places[place], edges[edge]):
+            between[edge].append(places[place])
+    rows: list[Points] = []
+    for corner, inner in zip(corners[:-1], between, strict=True):
+        rows += [corner, *_by_distance(corner, inner)]
+    return np.array(rows)
+
+
+def _is_between(place: Points, edge: LineString) -> bool:
+    """Whether a place on an edge is none of its ends, nor so near that it would fold the ring."""
+    return all(np.hypot(*(place - end)) > GRID for end in shapely.get_coordinates(edge))
+
+
+def _by_distance(origin: Points, points: Sequence[Points]) -> list[Points]:
+    return sorted(points, key=lambda point: float(np.hypot(*(point - origin))))
+
+
+def _moved_dynamics(dynamics: Dynamics | None, move: Similarity) -> Dynamics | None:
+    if dynamics is None:
+        return None
+    motion, removal = dynamics.motion, dynamics.removal
+    if motion is not None:
+        motion = make_motion(np.column_stack([motion.times, move.vectors(motion.offsets)]))
+    return replace(dynamics, motion=motion, removal=_moved_removal(removal, move))
+
+
+def _moved_removal(removal: Removal | None, move: Similarity) -> Removal | None:
+    if removal is None or removal.place is None:
+        return removal
+    x, y = move.points(np.array(removal.place)).tolist()
+    return replace(removal, place=(x, y))
+
+
+def _moved_properties(scene: Scene, modifiers: Modifiers, move: Similarity) -> dict[str, Any]:
+    left_out = {"optimum"} if modifiers.scale == 1.0 else {"optimum", "paper_best"}
+    kept = {key: value for key, value in scene.properties.items() if key not in left_out}
+    if "gates" in kept:
+        kept["gates"] = {
+            name: move.points(np.array(gate, dtype=np.float64)).tolist()
+            for name, gate in kept["gates"].items()
+        }
+    return kept | {"modified": modifiers.text}
