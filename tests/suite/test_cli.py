@@ -199,8 +199,8 @@ def test_a_planner_that_refuses_is_not_simulated(kbga_bench):
     said = kbga_bench(*wanted, code=1).out
     assert "door / ompl-rrtstar / seed 0: refused" in said
     assert (
-        "ompl-rrtstar keeps no budget of generations. Give one that it keeps: checks, cpu_s, wall_s."
-        in said
+        "ompl-rrtstar keeps no budget of generations. "
+        "Give one that it keeps: checks, cpu_s, wall_s." in said
     )
 
 
