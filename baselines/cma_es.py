@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.ends import ends_are_free
+from baselines.limits import time_is_over
 from baselines.visibility_graph import tiny_scene
 from suite.compiled import kernel
 from suite.errors import PluginError
@@ -90,7 +91,7 @@ class CmaEsPlanner(Planner):
     name: ClassVar[str] = "cmaes"
     Settings = CmaEsSettings
     abilities: ClassVar[Abilities] = Abilities(
-        anytime=True, budgets=frozenset({"wall_s", "generations", "checks"})
+        anytime=True, budgets=frozenset({"wall_s", "cpu_s", "generations", "checks"})
     )
 
     def plan(
@@ -151,6 +152,7 @@ class Search:
         self._bounds = np.tile(np.reshape(scene.bounds, (2, 2)).T, (settings.waypoints, 1))
         self._settings = settings
         self._budget = budget
+        self._time_is_over = time_is_over(budget, recorder)
         self._recorder = recorder
 
     def run(self, restart: int, rng: np.random.Generator) -> None:
@@ -183,11 +185,11 @@ class Search:
 
     def _is_spent(self) -> bool:
         """Whether there is no time left, or there are not enough checks for another path."""
-        checks, wall_s = self._budget.checks, self._budget.wall_s
-        needed = 2 * (self._settings.waypoints + 1)
-        return (checks is not None and self.checks + needed > checks) or (
-            wall_s is not None and self._recorder.wall_s() >= wall_s
-        )
+        return not self._can_check(self._settings.waypoints + 1) or self._time_is_over()
+
+    def _can_check(self, segments: int) -> bool:
+        """Whether the budget has as many checks left."""
+        return self._budget.checks is None or self.checks + segments <= self._budget.checks
 
     def _optimiser(self, restart: int, rng: np.random.Generator) -> Any:
         """The package's optimiser: first around the straight line, then around random points."""
@@ -214,6 +216,8 @@ class Search:
         return float(length + self._settings.penalty * inside)
 
     def _keep_if_free(self, path: NDArray[np.float64], length: float) -> None:
+        if not self._can_check(len(path) - 1):
+            return
         self.checks += len(path) - 1
         if first_collision(path, self._arrays) < 0:
             self.best, self.best_cost = path, length

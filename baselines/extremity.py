@@ -16,6 +16,7 @@ from shapely.geometry import Point, Polygon
 from shapely.geometry.polygon import orient
 
 from baselines.ends import ends_are_free
+from baselines.limits import time_is_over
 from baselines.visibility_graph import tiny_scene
 from suite.errors import PluginError
 from suite.exact import path_length
@@ -44,9 +45,8 @@ class TimedEnvironment(PolygonEnvironment):  # type: ignore[misc]
     it turns to the next one.
     """
 
-    def __init__(self, wall_s: float, clock: Callable[[], float]) -> None:
-        self._wall_s = wall_s
-        self._clock = clock
+    def __init__(self, time_is_over: Callable[[], bool]) -> None:
+        self._time_is_over = time_is_over
 
     def within_map(self, coords: tuple[float, float]) -> bool:
         """Whether a point lies in the region, if there is time left."""
@@ -59,7 +59,7 @@ class TimedEnvironment(PolygonEnvironment):  # type: ignore[misc]
         super().translate(new_origin)
 
     def _look(self) -> None:
-        if self._clock() >= self._wall_s:
+        if self._time_is_over():
             raise OutOfTimeError
 
 
@@ -98,7 +98,7 @@ class ExtremityPlanner(Planner):
     name: ClassVar[str] = "extremitypathfinder"
     Settings = ExtremitySettings
     abilities: ClassVar[Abilities] = Abilities(
-        deterministic=True, exact=True, budgets=frozenset({"wall_s"})
+        deterministic=True, exact=True, budgets=frozenset({"wall_s", "cpu_s"})
     )
 
     def refuse(self, scene: Scene, query: Query, budget: Budget) -> str | None:  # noqa: ARG002
@@ -140,9 +140,9 @@ class ExtremityPlanner(Planner):
         regions = regions_of(scene, query) if ends_are_free(scene, query) else []
         if not regions:
             return Plan(PlanStatus.INFEASIBLE)
-        wall_s = np.inf if budget.wall_s is None else budget.wall_s
+        is_over = time_is_over(budget, recorder)
         try:
-            paths = [_path_in(region, query, wall_s, recorder.wall_s) for region in regions]
+            paths = [_path_in(region, query, is_over) for region in regions]
         except OutOfTimeError:
             return Plan(PlanStatus.EXHAUSTED)
         # While a robot drives, nobody asks whether the planner refuses.
@@ -185,10 +185,10 @@ def pinches(region: Polygon) -> list[tuple[float, float]]:
 
 
 def _path_in(
-    region: Polygon, query: Query, wall_s: float, clock: Callable[[], float]
+    region: Polygon, query: Query, time_is_over: Callable[[], bool]
 ) -> NDArray[np.float64]:
     """Shortest path (n, 2) in a region that holds both ends; no rows if the package finds none."""
-    environment = TimedEnvironment(wall_s, clock)
+    environment = TimedEnvironment(time_is_over)
     environment.store(region.exterior.coords[:-1], [hole.coords[:-1] for hole in region.interiors])
     # Ends on an outline are free, but do not always pass for points of the region.
     points, _ = environment.find_shortest_path(tuple(query.start), tuple(query.goal), verify=False)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from baselines.ends import ends_are_free
+from baselines.limits import time_is_over
 from baselines.visibility_graph import tiny_scene
 from suite.compiled import kernel
 from suite.errors import PluginError
@@ -61,14 +62,14 @@ class GridAstarSettings:
 class GridAstarPlanner(Planner):
     """A* from cell centre to cell centre along free segments, by the package tcod.
 
-    A grid without a path proves nothing: such a run is exhausted. Wall time is looked at before
+    A grid without a path proves nothing: such a run is exhausted. Time is looked at before
     each row of the grid and before the search, which is one call and takes the smaller part.
     """
 
     name: ClassVar[str] = "grid-astar"
     Settings = GridAstarSettings
     abilities: ClassVar[Abilities] = Abilities(
-        deterministic=True, budgets=frozenset({"wall_s", "checks"})
+        deterministic=True, budgets=frozenset({"wall_s", "cpu_s", "checks"})
     )
 
     def plan(
@@ -82,7 +83,7 @@ class GridAstarPlanner(Planner):
         """Check the grid's edges, search it, and pull the path taut."""
         if not ends_are_free(scene, query):
             return Plan(PlanStatus.INFEASIBLE, checks=0)
-        sight = Sight(scene.arrays, budget, recorder.wall_s)
+        sight = Sight(scene.arrays, budget, time_is_over(budget, recorder))
         try:
             path = Grid(scene, self.settings.resolution, sight).path(query)
             if path is None:
@@ -113,16 +114,17 @@ class Sight:
     checks : made so far.
     """
 
-    def __init__(self, arrays: ObstacleArrays, budget: Budget, clock: Callable[[], float]) -> None:
+    def __init__(
+        self, arrays: ObstacleArrays, budget: Budget, time_is_over: Callable[[], bool]
+    ) -> None:
         self.arrays = arrays
         self.checks = 0
         self._limit = np.inf if budget.checks is None else budget.checks
-        self._wall_s = np.inf if budget.wall_s is None else budget.wall_s
-        self._clock = clock
+        self._time_is_over = time_is_over
 
     def spend(self, checks: int) -> None:
         """Take so many checks from the budget; OutOfBudgetError if it does not have them."""
-        if self.checks + checks > self._limit or self._clock() >= self._wall_s:
+        if self.checks + checks > self._limit or self._time_is_over():
             raise OutOfBudgetError
         self.checks += checks
 

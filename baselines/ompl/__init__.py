@@ -19,11 +19,15 @@ ompl-bfmt              BFMT             one-shot  it has a path, or has no sampl
 (left out)             LBKPIECE1
 =====================  ===============  ========  ==============================================
 
-How a budget stops them. Once its checks are spent, every motion is refused. Besides, the RRT*
-family, BIT*, AORRTC and the one-shot planners ask in each iteration whether the run is over
-(``watched``, ``oneshot``). PRM and PRM* would hang for ever with a question in Python: they get a
-timed condition, which the collision check ends by a call (``roadmap``). An exception ends the
-simplifier (``simplification``).
+How a budget stops them. OMPL looks at its own clock in each iteration, in compiled code. Checks and
+CPU seconds are counted where Python is asked anyway, whether a motion is free: the answer ends
+OMPL's condition by a call, and once the checks are spent, or the time is, every motion is refused
+(``adapter``, ``collision``). An exception ends the simplifiers (``simplification``).
+
+Python is asked for collisions only, and, by PRM and PRM*, for samples, so that growth can be paused
+(``roadmap``). ``callback_share`` in a row is the share of its time that this took.
+
+Rooms are scaled into the unit square without rounding (``units``). Settings are in metres.
 
 Left out: the KPIECE planners keep the free part of a motion that collides, and OMPL 2.0.1 never
 asks a ``MotionValidator`` written in Python for that part. They would be other algorithms.

@@ -6,7 +6,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from ompl import base as ob
 from ompl import geometric as og
 
 from baselines.ompl.adapter import OmplPlanner, Problem
@@ -23,7 +22,7 @@ class OneShotPlanner(OmplPlanner):
 
     def _run(self, problem: Problem, recorder: Recorder) -> NDArray[np.float64] | None:
         problem.set_up()
-        problem.planner.solve(ob.PlannerTerminationCondition(problem.is_over))
+        problem.planner.solve(problem.until_over())
         path = problem.path()
         if path is not None:
             recorder.improved(path_length(path), checks=problem.collision.checks)
@@ -66,7 +65,7 @@ class RRTConnectSettings(SimplifiedSettings):
     intermediate_states : add the states along an edge to the tree, too.
     """
 
-    range: float | None = bound("setRange", ABOVE_0)
+    range: float | None = bound("setRange", ABOVE_0, is_length=True)
     intermediate_states: bool | None = bound("setIntermediateStates")
 
 

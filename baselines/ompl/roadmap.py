@@ -19,9 +19,6 @@ from suite.planner import Recorder
 PATIENCE_S = 4.0
 """How long a search of a roadmap may wait for OMPL's thread, where a path is known to exist."""
 
-NO_LIMIT_S = 1e6
-"""A time that no run reaches: OMPL's condition that can be ended by a call needs some time."""
-
 
 @dataclass(frozen=True, slots=True)
 class PRMstarSettings(OmplSettings):
@@ -51,9 +48,13 @@ class PRMSettings(PRMstarSettings):
 
 @dataclass(slots=True)
 class Pause:
-    """Whether growth is paused, so that a roadmap is only searched."""
+    """Whether growth is paused, so that a roadmap is only searched.
+
+    draws : samples that were drawn outside pauses.
+    """
 
     is_on: bool = False
+    draws: int = 0
 
 
 class PausableSampler(ob.ValidStateSampler):  # type: ignore[misc]
@@ -69,6 +70,7 @@ class PausableSampler(ob.ValidStateSampler):  # type: ignore[misc]
         if self._pause.is_on:
             time.sleep(1e-4)  # leave the processor to the thread that searches
             return False
+        self._pause.draws += 1
         return bool(self._uniform.sample(state))
 
     def sampleNear(self, state: Any, near: Any, distance: float) -> bool:  # noqa: N802
@@ -86,7 +88,8 @@ class RoadmapPlanner(OmplPlanner):
     """
 
     def _run(self, problem: Problem, recorder: Recorder) -> NDArray[np.float64] | None:
-        search = _RoadmapSearch(problem)
+        pause = Pause()
+        search = _RoadmapSearch(problem, pause)
         began = time.perf_counter()
         path = None
         while True:
@@ -95,6 +98,7 @@ class RoadmapPlanner(OmplPlanner):
                 path = found
                 recorder.improved(path_length(path), checks=problem.collision.checks)
             if problem.is_over():
+                problem.collision.visits = pause.draws
                 return path
             self._grow(problem, time.perf_counter() - began, search.last_s)
 
@@ -102,13 +106,13 @@ class RoadmapPlanner(OmplPlanner):
         """Grow the roadmap until the slice ends: by checks if they are limited, else by time."""
         settings, collision = self.settings, problem.collision
         slice_ends = np.inf
-        left_s = min(problem.remaining_s() - search_s, NO_LIMIT_S)
+        left_s = problem.remaining_s() - search_s
         if np.isfinite(collision.limit):
             size = max(settings.slice_checks, settings.slice_growth * collision.checks)
             slice_ends = min(collision.checks + int(size), collision.limit)
         else:
             left_s = min(left_s, max(settings.slice_s, settings.slice_growth * elapsed_s))
-        condition = ob.timedPlannerTerminationCondition(max(left_s, 1e-4))
+        condition = problem.until_over(left_s)
         collision.call_at(slice_ends, condition.terminate)
         problem.planner.growRoadmapPtc(condition)
         collision.call_at(np.inf, do_nothing)
@@ -126,9 +130,9 @@ class _RoadmapSearch:
     last_s : how long the last search took, seconds.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, pause: Pause) -> None:
         self._problem = problem
-        self._pause = pause = Pause()
+        self._pause = pause
         problem.information.setValidStateSamplerAllocator(
             lambda information: PausableSampler(information, pause)
         )
@@ -165,7 +169,8 @@ class _RoadmapSearch:
             for a, b in collision.free_motions:
                 self._components.join(a, b)
             collision.free_motions = []
-            start, goal = tuple(query.start.tolist()), tuple(query.goal.tolist())
+            unit = self._problem.unit
+            start, goal = tuple((query.start / unit).tolist()), tuple((query.goal / unit).tolist())
             self._is_connected = self._components.root(start) == self._components.root(goal)
             if self._is_connected:
                 collision.free_motions = None

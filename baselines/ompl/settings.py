@@ -21,12 +21,15 @@ AT_LEAST_1 = Rule(lambda value: value >= 1, "be 1 or more")
 A_SHARE = Rule(lambda value: 0 <= value <= 1, "lie between 0 and 1")
 
 
-def bound(setter: str, rule: Rule | None = None) -> Any:
-    """Declare a setting that OMPL's planner has a setter for; None leaves OMPL's own default."""
-    return field(default=None, metadata={"setter": setter, "rule": rule})
+def bound(setter: str, rule: Rule | None = None, *, is_length: bool = False) -> Any:
+    """Declare a setting that OMPL's planner has a setter for; None leaves OMPL's own default.
+
+    A length is in metres, and handed over in OMPL's coordinates.
+    """
+    return field(default=None, metadata={"setter": setter, "rule": rule, "is_length": is_length})
 
 
-def ours(default: float, rule: Rule | None = None) -> Any:
+def ours(default: float | None, rule: Rule | None = None) -> Any:
     """Declare a setting of the adapter, which OMPL does not know."""
     return field(default=default, metadata={"rule": rule})
 
@@ -47,9 +50,10 @@ class OmplSettings:
                 raise ValueError(f"{setting.name} is {value}. It must {rule.words}.")
 
 
-def apply(settings: OmplSettings, planner: Any) -> None:
-    """Hand OMPL's planner the settings that are not None."""
+def apply(settings: OmplSettings, planner: Any, unit: float) -> None:
+    """Hand OMPL's planner the settings that are not None; ``unit`` metres are 1 to it."""
     for setting in fields(settings):
         value = getattr(settings, setting.name)
         if value is not None and "setter" in setting.metadata:
-            getattr(planner, setting.metadata["setter"])(value)
+            scaled = value / unit if setting.metadata["is_length"] else value
+            getattr(planner, setting.metadata["setter"])(scaled)

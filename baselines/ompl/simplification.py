@@ -1,42 +1,49 @@
-"""OMPL's simplifier (Geraerts and Overmars 2007, and more) on a budget, with the exact check.
+"""OMPL's simplifiers (Geraerts and Overmars 2007, and more) on a budget, with the exact check.
 
-It cuts corners wherever the shortcut is free, and drops and merges vertices.
+They cut corners wherever the shortcut is free, and drop and merge vertices.
 """
 
-import numpy as np
-from ompl import base as ob
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from ompl import geometric as og
 
 from baselines.ompl.adapter import Problem
-from baselines.ompl.collision import do_nothing
-
-CHECKS_BETWEEN_LOOKS = 64
-"""Checks after which a step of the simplifier looks at the clock: about 0.05 ms."""
 
 
 class BudgetSpentError(Exception):
     """Ends the simplifier in the middle of a step."""
 
 
+@contextmanager
+def ended_by_exception(problem: Problem) -> Iterator[None]:
+    """End what is in the block by BudgetSpentError as soon as the budget is spent.
+
+    Merely refused, OMPL would take the path for a colliding one and move its waypoints at random
+    to mend it.
+    """
+
+    def end() -> None:
+        raise BudgetSpentError
+
+    before, problem.collision.end = problem.collision.end, end
+    try:
+        yield
+    finally:
+        problem.collision.end = before
+
+
 def simplify(problem: Problem) -> None:
     """Simplify the problem's solution until nothing changes or the budget is spent.
 
-    The path is free after each check. Merely refused when the budget is spent, OMPL would take the
-    path for a colliding one and move its waypoints at random to mend it: an exception ends it.
+    The path is free after each check.
     """
-    collision = problem.collision
-
-    def look() -> None:
-        if problem.is_over():
-            raise BudgetSpentError
-        collision.call_at(min(collision.checks + CHECKS_BETWEEN_LOOKS, collision.limit), look)
-
+    if problem.is_over():
+        return
     solution = problem.definition.getSolutionPath()
-    is_over = ob.PlannerTerminationCondition(problem.is_over)
-    collision.call_at(collision.checks, look)
+    condition = problem.until_over()
     try:
-        og.PathSimplifier(problem.information).simplify(solution, is_over, False)
+        with ended_by_exception(problem):
+            og.PathSimplifier(problem.information).simplify(solution, condition, False)
     except BudgetSpentError:
         pass
-    finally:
-        collision.call_at(np.inf, do_nothing)  # ``look`` would keep the problem alive

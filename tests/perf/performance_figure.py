@@ -1,4 +1,7 @@
-"""The picture of the times to 1 %: a row per scene, a mark per planner, readable in grey."""
+"""The picture of the times to 1 %: a row per scene, a mark per planner, readable in grey.
+
+A planner of OMPL's has one mark: its own settings or the tuned ones, whichever come sooner.
+"""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,6 +11,8 @@ import numpy as np
 
 MARKS = {
     "kbga": ("o", "#000000", True),
+    "kbga-plus": ("o", "#000000", False),
+    "ompl-shortcut": ("*", "#d55e00", False),
     "ompl-aorrtc": ("^", "#d55e00", True),
     "ompl-sorrtstar": ("s", "#0072b2", True),
     "ompl-informedrrtstar": ("D", "#009e73", False),

@@ -22,6 +22,9 @@ SCENES = (
 )
 """The eight of the paper."""
 
+OURS = ("kbga", "kbga-plus")
+"""The planners that are compared with the others: the paper's, and ours."""
+
 OMPL_PLANNERS = (
     "ompl-rrtstar",
     "ompl-prmstar",
@@ -29,7 +32,13 @@ OMPL_PLANNERS = (
     "ompl-sorrtstar",
     "ompl-bitstar",
     "ompl-aorrtc",
+    "ompl-shortcut",
 )
+
+TUNED: dict[str, dict[str, float]] = {}
+"""The settings of each that did best on the scenes of the matrix ompl-tuning, if not its own."""
+
+RIVALS = (*OMPL_PLANNERS, *(f"{name}-tuned" for name in TUNED))
 
 SEEDS = 20
 
@@ -74,7 +83,11 @@ def optimum(name: str) -> float:
 
 
 def planner(name: str, **settings: float) -> Planner:
-    found = load_planner(name)
+    """A planner by its name, or one of OMPL's with its tuned settings: ``ompl-rrtstar-tuned``."""
+    plain = name.removesuffix("-tuned")
+    found = load_planner(plain)
+    if plain != name:
+        settings = TUNED[plain] | settings
     made = found(found.Settings(**settings))
     made.warm_up()
     return made

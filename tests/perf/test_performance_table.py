@@ -3,6 +3,7 @@ import math
 
 import pytest
 
+from suite.plugins import load_planner
 from tests.perf.performance_table import (
     EVERYWHERE,
     Measured,
@@ -12,7 +13,9 @@ from tests.perf.performance_table import (
     main,
     times_table,
 )
-from tests.perf.series import SCENES
+from tests.perf.series import SCENES, TUNED, planner
+
+AHEAD_OF_KBGA = "time to 1 %: the best of OMPL's planners over kbga"
 
 
 def record(*benchmarks: dict) -> dict:
@@ -30,10 +33,9 @@ def near(planner: str, near_s: list, scene: str = "maze") -> tuple:
 
 
 def row(measured: Measured, goal: str, scene: str = "maze", about: str = "") -> Row:
-    (found,) = (
-        r for r in goals(measured)
-        if r.goal.startswith(goal) and r.scene == scene and about in r.goal
-    )  # fmt: skip
+    rows = [r for r in goals(measured) if r.scene == scene]
+    named = [r for r in rows if r.goal == goal]
+    (found,) = named or [r for r in rows if r.goal.startswith(goal) and about in r.goal]
     return found
 
 
@@ -65,7 +67,7 @@ def test_the_best_of_the_rivals_counts():
             near("ompl-aorrtc", [0.4, 0.4, None, 0.4]),
         )
     )
-    found = row(measured, "time to 1 %: ")
+    found = row(measured, AHEAD_OF_KBGA)
     assert found.measured == pytest.approx(200.0)
     assert found.reached == "yes"
     assert found.remark == "ompl-aorrtc: 400 ms, 3 of 4 runs; kbga: 2 ms, 4 of 4"
@@ -74,15 +76,33 @@ def test_the_best_of_the_rivals_counts():
 @pytest.mark.parametrize(("ours", "reached"), [(0.005, "yes"), (0.05, "undecided")])
 def test_rivals_that_never_came_there_give_a_lower_bound(ours, reached):
     measured = Measured(record(near("kbga", [ours] * 4), near("ompl-rrtstar", [None] * 3)))
-    found = row(measured, "time to 1 %: ")
+    found = row(measured, AHEAD_OF_KBGA)
     assert found.measured == pytest.approx(1.0 / ours)
     assert found.reached == reached
 
 
-def test_a_planner_that_never_comes_there_is_not_ahead():
-    measured = Measured(record(near("kbga", [None] * 3), near("ompl-rrtstar", [0.5] * 4)))
-    assert row(measured, "time to 1 %: ").reached == "no"
-    assert row(measured, "time to 1 % over").measured is None
+@pytest.mark.parametrize("theirs", [[0.5] * 4, [None] * 3], ids=["they do", "nor do they"])
+def test_a_planner_that_never_comes_there_is_not_ahead(theirs):
+    measured = Measured(record(near("kbga", [None] * 3), near("ompl-rrtstar", theirs)))
+    found = row(measured, AHEAD_OF_KBGA)
+    assert found.reached == "no"
+    assert "more than half of kbga's runs never come there: 0 of 3 do" in found.remark
+    assert row(measured, "time to 1 % of kbga over the exact solver's time").measured is None
+
+
+def test_a_planner_that_comes_later_is_so_many_times_off():
+    measured = Measured(record(near("kbga", [0.4] * 4), near("ompl-shortcut", [0.02] * 4)))
+    assert row(measured, AHEAD_OF_KBGA).reached == "no, 2,000 times off"
+
+
+def test_each_planner_of_ours_has_its_own_goal():
+    measured = Measured(
+        record(
+            near("kbga", [0.1] * 4), near("kbga-plus", [0.001] * 4), near("ompl-aorrtc", [0.2] * 4)
+        )
+    )
+    assert row(measured, AHEAD_OF_KBGA).measured == pytest.approx(2.0)
+    assert row(measured, f"{AHEAD_OF_KBGA}-plus").measured == pytest.approx(200.0)
 
 
 def test_what_was_not_measured_is_a_row_that_says_so():
@@ -113,6 +133,21 @@ def test_times_are_listed_beside_each_other():
     assert [(r["planner"], r["sign"], r["over kbga"]) for r in rows] == [
         ("kbga", "=", 1.0), ("ompl-bitstar", ">", 100.0)
     ]  # fmt: skip
+
+
+def test_no_ratio_stands_beside_a_planner_that_did_not_come_there():
+    measured = Measured(record(near("kbga", [None] * 3), near("ompl-bitstar", [0.2] * 4)))
+    rows = times_table(measured).frame.to_dict("records")
+    assert [(r["planner"], r["sign"]) for r in rows] == [("kbga", ">"), ("ompl-bitstar", "=")]
+    assert all(r["over kbga"] is None for r in rows)
+
+
+def test_every_tuned_planner_has_settings_of_its_own():
+    for name, settings in TUNED.items():
+        made = planner(f"{name}-tuned")
+        assert made.name == name
+        assert made.settings != load_planner(name).Settings()
+        assert all(getattr(made.settings, key) == value for key, value in settings.items())
 
 
 def test_a_record_becomes_tables_a_figure_and_a_manifest(tmp_path, capsys):

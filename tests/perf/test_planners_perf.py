@@ -7,13 +7,13 @@ import pytest
 
 from suite.errors import SceneError
 from suite.planner import Budget, Recorder
-from tests.perf.series import SCENES, SEEDS, plan, planner, scene
+from tests.perf.series import OURS, SCENES, SEEDS, plan, planner, scene
 
 FEW, MANY = "scattered_20", "scattered_3000"
 
 
 @pytest.mark.parametrize("scene_name", SCENES)
-@pytest.mark.parametrize("planner_name", ["kbga", "plain-ga", "visibility-graph"])
+@pytest.mark.parametrize("planner_name", [*OURS, "plain-ga", "visibility-graph"])
 def test_whole_run(benchmark, planner_name, scene_name):
     benchmark.group = f"whole run on {scene_name}"
     _measure_whole_runs(benchmark, "whole run", planner_name, scene_name)
@@ -54,14 +54,15 @@ def _median(counts):
 
 
 @pytest.mark.parametrize("scene_name", SCENES)
-def test_first_population(benchmark, scene_name):
+@pytest.mark.parametrize("planner_name", OURS)
+def test_first_population(benchmark, planner_name, scene_name):
     """Set-up, first population and one generation: what a run can't be shorter than."""
-    benchmark.group = "kbga until its first generation"
-    runner = planner("kbga")
+    benchmark.group = f"{planner_name} until its first generation"
+    runner = planner(planner_name)
     seeds = count()
     benchmark.pedantic(
         lambda: plan(runner, scene_name, next(seeds), Budget(generations=1)),
         rounds=SEEDS,
         warmup_rounds=1,
     )
-    benchmark.extra_info.update(measure="first generation", scene=scene_name)
+    benchmark.extra_info.update(measure="first generation", scene=scene_name, planner=planner_name)

@@ -5,7 +5,8 @@ import pytest
 from suite.planner import Budget
 from tests.perf.series import (
     NEAR,
-    OMPL_PLANNERS,
+    OURS,
+    RIVALS,
     SCENES,
     SEEDS,
     WALL_S,
@@ -19,7 +20,7 @@ WARM_UP_SEED = 1000
 
 
 @pytest.mark.parametrize("scene_name", SCENES)
-@pytest.mark.parametrize("planner_name", ["kbga", *OMPL_PLANNERS])
+@pytest.mark.parametrize("planner_name", [*OURS, *RIVALS])
 def test_time_to_1_percent(benchmark, planner_name, scene_name):
     """All seeds are one round; what each needed is kept beside. None: not within the time."""
     benchmark.group = f"time to 1 % on {scene_name}: all seeds"

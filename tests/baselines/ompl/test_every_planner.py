@@ -19,6 +19,7 @@ from baselines.ompl.oneshot import (
     SimplifiedPlanner,
 )
 from baselines.ompl.roadmap import PRMPlanner, PRMstarPlanner
+from baselines.ompl.shortcut import ShortcutPlanner
 from baselines.ompl.watched import (
     AORRTCPlanner,
     BITstarPlanner,
@@ -45,6 +46,7 @@ PLANNERS = (
     RRTConnectPlanner,
     FMTPlanner,
     BFMTPlanner,
+    ShortcutPlanner,
 )
 
 WITH_ITERATIONS = (RRTstarPlanner, InformedRRTstarPlanner, SORRTstarPlanner, BITstarPlanner)
@@ -160,6 +162,32 @@ def test_the_first_limit_that_is_reached_ends_the_run(planner):
 
 
 @each
+def test_a_budget_of_cpu_time_is_kept(planner):
+    # A busy machine takes wall time from a run, but gives it no CPU time.
+    recorder = Recorder()
+    run(planner, load_scene("maze"), Budget(cpu_s=0.1), recorder=recorder)
+    assert recorder.cpu_s() < 1.0
+
+
+@each
+def test_a_spent_cpu_clock_ends_the_run_at_once(planner):
+    class Late(Recorder):
+        def cpu_s(self) -> float:
+            return 1.0
+
+    made = run(planner, load_scene("maze"), Budget(cpu_s=0.9), recorder=Late())
+    assert made.checks < 2000
+
+
+@each
+def test_a_search_that_goes_on_asks_exactly_as_often_as_its_budget_allows(planner):
+    scene = scene_of([RING], (1, 5), (6, 6))
+    made = run(planner, scene, Budget(checks=3000))
+    assert made.checks == 3000
+    assert made.computed_checks is None  # no answer comes from memory
+
+
+@each
 def test_without_a_budget_the_default_of_the_settings_ends_the_run(planner):
     short = type(planner)(planner.Settings(default_wall_s=0.05))
     assert run(short, SCENES["one box"], Budget()).checks > 0
@@ -169,10 +197,8 @@ def test_without_a_budget_the_default_of_the_settings_ends_the_run(planner):
 def test_generations_alone_are_refused_with_a_reason(planner):
     scene = SCENES["one box"]
     reason = refusal(planner, scene, scene.query(), Budget(generations=10))
-    assert (
-        reason
-        == f"{planner.name} keeps no budget of generations. Give one that it keeps: checks, wall_s."
-    )
+    kept = "Give one that it keeps: checks, cpu_s, wall_s."
+    assert reason == f"{planner.name} keeps no budget of generations. {kept}"
     for budget in (Budget(), Budget(checks=1), Budget(generations=10, wall_s=1.0)):
         assert refusal(planner, scene, scene.query(), budget) is None
 

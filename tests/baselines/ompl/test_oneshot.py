@@ -36,7 +36,7 @@ ENCLOSED = {
 @each
 def test_a_oneshot_planner_ends_with_its_path_and_says_that_it_is_not_anytime(planner):
     assert not planner.abilities.anytime
-    assert planner.abilities.budgets == {"wall_s", "checks"}
+    assert planner.abilities.budgets == {"wall_s", "cpu_s", "checks"}
     assert run(planner, SCENES["one box"], PLENTY).checks < 10_000
 
 

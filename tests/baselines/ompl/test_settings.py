@@ -13,6 +13,7 @@ from baselines.ompl.oneshot import (
     RRTSettings,
 )
 from baselines.ompl.roadmap import PRMPlanner, PRMSettings, PRMstarPlanner, PRMstarSettings
+from baselines.ompl.shortcut import ShortcutPlanner, ShortcutSettings
 from baselines.ompl.watched import (
     AORRTCPlanner,
     AORRTCSettings,
@@ -59,6 +60,10 @@ EVERY_SETTING = (
     RRTConnectPlanner(RRTConnectSettings(range=2.0, intermediate_states=True, simplify=False)),
     FMTPlanner(FMTSettings(**MARCHING)),
     BFMTPlanner(BFMTSettings(**MARCHING)),
+    ShortcutPlanner(ShortcutSettings(
+        range=2.0, reach=0.2, narrowing=0.5, rounds=2, steps=50, empty_steps=20, rope=0.2,
+        gain=0.01, hopeless=1.2,
+    )),
     PRMPlanner(PRMSettings(
         slice_s=0.01, slice_checks=200, slice_growth=0.2, max_nearest_neighbors=5,
     )),
@@ -121,6 +126,15 @@ def test_a_short_range_makes_many_waypoints():
     (FMTSettings, {"nearest_k": False}),
     (BFMTSettings, {"radius_multiplier": 0.9}),
     (PRMSettings, {"max_nearest_neighbors": 0}),
+    (ShortcutSettings, {"range": 0.0}),
+    (ShortcutSettings, {"reach": 0.0}),
+    (ShortcutSettings, {"narrowing": 0.0}),
+    (ShortcutSettings, {"rounds": 0}),
+    (ShortcutSettings, {"steps": 0}),
+    (ShortcutSettings, {"empty_steps": 0}),
+    (ShortcutSettings, {"rope": 0.0}),
+    (ShortcutSettings, {"gain": 2.0}),
+    (ShortcutSettings, {"hopeless": 0.9}),
     (PRMstarSettings, {"slice_s": 0}),
     (PRMstarSettings, {"slice_checks": 0}),
     (PRMstarSettings, {"slice_growth": 0}),
