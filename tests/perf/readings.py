@@ -16,6 +16,8 @@ The rule, written down before the first search:
 4. Choice by choice, in the order below, the value of the least distance is taken; of equal ones,
    the earlier. So again until a whole round changes nothing, or ROUNDS are done; and once more from
    ANOTHER_START. The nearest of all that were tried is the paper's algorithm here.
+   Changed once: a first search without the corners, over 62 readings, found none that has a path in
+   the maze; so the corners were let in, and a larger C.
 5. Then the chosen one and the plainest run again, with twenty other seeds: the figures of these are
    what is reported, for the best of many is flattered by the seeds that it was chosen with.
 """
@@ -38,7 +40,7 @@ from kbga import KBGA, KBGASettings
 from suite.scenes.catalogue import load_scene
 
 CHOICES: Mapping[str, tuple[Any, ...]] = {
-    "repair_reach": (1, 2),
+    "repair_reach": (1, 2, 0),
     # "Small-scale local search": so the plainest is no search round a whole wall.
     "repair_candidates": (64, 16),
     "repair_must_help": (False, True),
@@ -47,12 +49,13 @@ CHOICES: Mapping[str, tuple[Any, ...]] = {
     "improvement_radius": (0, 8),
     "tournament_size": (2, 3, 5),
     "initial_nodes": (4, 8, 16),
-    "penalty": (10.0, 1.0, 30.0, 140.0),
+    "penalty": (10.0, 1.0, 30.0, 140.0, 1000.0),
     "stagnation": (15, 30),
     "generations_counted": ("best", "stop"),
 }
-"""Each silent choice, the plainest value first. Candidates next to corners are no choice: the paper
-has those next to the obstacle. Nor is memory: it draws nodes at random."""
+"""Each silent choice, the plainest value first. A reach of 0 are the grids next to an obstacle's
+corners: the last of three, for the paper has those next to the obstacle. Memory is no choice: the
+paper draws nodes at random."""
 
 ANOTHER_START: Mapping[str, Any] = {
     "repair_reach": 2,
