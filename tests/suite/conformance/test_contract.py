@@ -69,7 +69,7 @@ def outcomes(tmp_path):
 
 def test_an_author_sees_the_broken_rule_and_how_to_mend_it(outcomes):
     printed = outcomes("ChangesTheFolder")
-    assert "1 failed, 31 passed, 6 skipped" in printed
+    assert "1 failed, 32 passed, 6 skipped" in printed
     assert "FAILED" in printed
     assert "test_leaves_the_folder_alone" in printed
     assert "mend: Use whole paths" in printed
@@ -78,7 +78,7 @@ def test_an_author_sees_the_broken_rule_and_how_to_mend_it(outcomes):
 
 def test_an_author_sees_a_warning_and_the_test_passes(outcomes):
     printed = outcomes("ClaimsALowerCost")
-    assert "32 passed, 6 skipped" in printed
+    assert "33 passed, 6 skipped" in printed
     assert "ContractWarning: claimed-cost-is-the-length" in printed
 
 

@@ -66,7 +66,7 @@ def test_a_planner_that_keeps_the_contract_ends_with_code_0():
     done = kbga_bench(
         "check", "detours", "--plugin", f"{BROKEN}:Detours", "--set", "tries=20", code=0
     )
-    assert done.stdout.endswith("detours: keeps the contract, 32 rules, 6 do not apply.\n")
+    assert done.stdout.endswith("detours: keeps the contract, 33 rules, 6 do not apply.\n")
     assert "kept      same-seed-same-path\n" in done.stdout
 
 
@@ -128,8 +128,8 @@ def test_several_are_checked_and_each_has_a_line_at_the_end():
     done = kbga_bench("check", "detours", "Bad Name", *plugins, code=1)
     assert done.stdout.count("same-seed-same-path\n") == 2
     assert done.stdout.splitlines()[-2:] == [
-        "detours: keeps the contract, 32 rules, 6 do not apply.",
-        "Bad Name: 1 of 32 rules broken, 6 do not apply.",
+        "detours: keeps the contract, 33 rules, 6 do not apply.",
+        "Bad Name: 1 of 33 rules broken, 6 do not apply.",
     ]
 
 
