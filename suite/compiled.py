@@ -2,7 +2,8 @@
 
 numba notices when the file of a cached function changes, but not when a function that it calls
 changes in another file: after an update, old machine code would go on running inside new. So there
-is one folder for each state of the files that kernels are made from, and its name is a hash of them.
+is one folder for each state of the files that kernels are made from, and a hash of them is its
+name.
 """
 
 import hashlib

@@ -34,7 +34,7 @@ def scenes_listing() -> list[dict[str, Any]]:
 
 
 def _listed(name: str) -> dict[str, Any]:
-    """A scene of the catalogue that is a file.""" 
+    """A scene of the catalogue that is a file."""
     scene = load_scene(name)
     return {
         "name": name,

@@ -191,7 +191,7 @@ def make_scene(
     queries : mapping from name to (start, goal), or one such pair
         Points (2,), metres. A pair alone is the query ``main``.
     properties : mapping, optional
-        Kept with the scene as it is.
+        Kept with the scene as they are, but for the optima, which hold for a robot of no size.
     path : Path, optional
         The file that the pieces came from; named in errors.
     inflate : float
@@ -247,7 +247,7 @@ def make_scene(
         workspace=room,
         obstacles=tuple(named),
         queries=tuple(_as_query(where, key, pair) for key, pair in ends.items()),
-        properties=MappingProxyType(dict(properties or {})),
+        properties=MappingProxyType(_still_true(properties or {}, inflate)),
         path=path,
     )
     # What comes upon an end later is what dynamic scenes are for: a hit, or a goal to wait for.
@@ -256,6 +256,11 @@ def make_scene(
         _check_free(where, first, f"start of query '{query.name}'", query.start)
         _check_free(where, first, f"goal of query '{query.name}'", query.goal)
     return scene
+
+
+def _still_true(properties: Mapping[str, Any], inflate: float) -> dict[str, Any]:
+    """The properties without what holds for a point only, if the robot is none."""
+    return {k: v for k, v in properties.items() if inflate == 0.0 or k != "optimum"}
 
 
 def _check_unique(where: str, what: str, names: Sequence[str]) -> None:

@@ -476,10 +476,11 @@ def read_replans(path: Path) -> pd.DataFrame:
     -------
     DataFrame
         key, number (from 0), time (simulated seconds), changed (whether the robot knew something
-        new), status, cost and optimum (metres), latency_s, generations, checks.
+        new), status, cost and optimum (metres), latency_s, generations, checks,
+        computed_checks.
     """
     columns = ("time", "changed", "status", "cost", "optimum", "latency_s")
-    counts = ("generations", "checks")
+    counts = ("generations", "checks", "computed_checks")
     values = ", ".join(f"replan.value ->> '{name}' AS {name}" for name in (*columns, *counts))
     frame = _read(
         path,
@@ -489,7 +490,7 @@ def read_replans(path: Path) -> pd.DataFrame:
     )
     numbers = ["cost", "optimum", "latency_s"]
     frame[numbers] = frame[numbers].astype("float64")
-    return frame.astype({"changed": "boolean", "generations": "Int64", "checks": "Int64"})
+    return frame.astype({"changed": "boolean", **dict.fromkeys(counts, "Int64")})
 
 
 def read_simulation(path: Path, key: str) -> dict[str, Any]:

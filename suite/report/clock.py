@@ -15,6 +15,9 @@ from numpy.typing import NDArray
 TIMES = ("wall_s", "time_to_best_s")
 """Columns of wall times."""
 
+NAMES_AT_MOST = 8
+"""Planners that are named one by one."""
+
 WALL = "wall_s"
 """The clock of :data:`suite.report.anytime.CLOCKS` that others on the machine disturb."""
 
@@ -68,12 +71,17 @@ def untimed_note(runs: pd.DataFrame) -> str:
 
 
 def dropped_note(runs: pd.DataFrame) -> str:
-    """How many rows :func:`fair` drops, as a sentence; empty if none."""
-    count = int((~outcome_stands(runs)).sum())
-    if not count:
+    """How many rows :func:`fair` drops, and whose, as a sentence; empty if none."""
+    dropped = runs.loc[~outcome_stands(runs), "variant"].value_counts(sort=False)
+    if dropped.empty:
         return ""
-    were = "1 row" if count == 1 else f"{count} rows"
-    return f"Left out: {were} of runs that the clock ended and that had no core for themselves."
+    whose = [f"{name} {count}" for name, count in dropped.items()]
+    named = ", ".join(whose[:NAMES_AT_MOST]) + (" and others" * (len(whose) > NAMES_AT_MOST))
+    were = "1 row" if dropped.sum() == 1 else f"{dropped.sum()} rows"
+    return (
+        f"Left out: {were} of runs that the clock ended and that had no core for themselves "
+        f"({named})."
+    )
 
 
 def joined(*sentences: str) -> str:
@@ -87,4 +95,4 @@ def _is_charged(runs: pd.DataFrame) -> NDArray[np.bool_]:
     charged = {
         text: json.loads(text).get("charge") == "measured" for text in texts.dropna().unique()
     }
-    return texts.map(charged).fillna(value=False).to_numpy(dtype=np.bool_)
+    return np.array([charged.get(text, False) for text in texts], dtype=np.bool_)

@@ -32,7 +32,7 @@ from suite.report.agreement import (
     sample_of,
     shares_differ,
 )
-from suite.report.generations import cut_off, generations_column
+from suite.report.generations import clock_columns, cut_off, generations_column
 from suite.report.statistics import Array
 from suite.report.summary import feasible
 from suite.report.table import Table
@@ -283,7 +283,7 @@ def _ratio(pair: Pair) -> Outcome:
     nothing = (float("nan"),) * 3
     if any(len(runs) < 2 for runs in quiet):
         return Outcome(paper, *nothing, NOT_COMPARABLE, "too few runs that were not contended")
-    first, second = (_log_sample(_numbers(runs[_clock(runs)])) for runs in quiet)
+    first, second = (_log_sample(_numbers(runs[clock_columns(runs)[1]])) for runs in quiet)
     told = tuple(Sample(float(np.log(f.value)), VARIATION, f.runs or RUNS) for f in pair.figures)
     compared = compare_contrasts((first, second), (told[0], told[1]))
     low, high = interval_of(first, second)
@@ -292,10 +292,6 @@ def _ratio(pair: Pair) -> Outcome:
     why = why.replace("of the paper's", "of the paper's, as logarithms")
     ours, low, high = (float(np.exp(value)) for value in (ours, low, high))
     return Outcome(paper, ours, low, high, compared.word, why)
-
-
-def _clock(runs: pd.DataFrame) -> str:
-    return "cpu_to_best_s" if generations_column(runs) == "generation_of_best" else "cpu_s"
 
 
 def _log_sample(times: Array) -> Sample:
@@ -324,7 +320,7 @@ def _as_row(pair: Pair, measure: str, outcome: Outcome, planner: str) -> dict[st
         "one": pair.one,
         "other": pair.other,
         "measure": measure,
-        "paper": outcome.paper,
+        "paper": outcome.paper if is_papers else float("nan"),
         "ours": outcome.ours,
         "ours low": outcome.low,
         "ours high": outcome.high,

@@ -52,11 +52,10 @@ def differences(runs: pd.DataFrame) -> pd.DataFrame:
     if runs.empty:
         return pd.DataFrame()
     settings = settings_of(runs)
-    ends: dict[str, Mapping[str, Any]] = {}
-    for name in (KBGA, KBGA_PLUS):
-        ends |= {name: values for values in settings[runs["variant"] == name][:1]}
-    if len(ends) < 2:
+    first = settings.groupby(runs["variant"]).first()
+    if not {KBGA, KBGA_PLUS} <= set(first.index):
         return pd.DataFrame()
+    ends: dict[str, Mapping[str, Any]] = {name: first[name] for name in (KBGA, KBGA_PLUS)}
     rows = []
     for planner, other in ((KBGA, KBGA_PLUS), (KBGA_PLUS, KBGA)):
         mine = runs[runs["planner"] == planner]

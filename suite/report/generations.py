@@ -27,7 +27,7 @@ def generations_column(runs: pd.DataFrame) -> str:
     Parameters
     ----------
     runs : DataFrame
-        As :func:`suite.store.read_runs` gives it; one row at least.
+        As :func:`suite.store.read_runs` gives it.
 
     Returns
     -------
@@ -36,6 +36,13 @@ def generations_column(runs: pd.DataFrame) -> str:
     """
     counted = {values.get("generations_counted", "best") for values in settings_of(runs)}
     return COUNTED["stop" if counted == {"stop"} else "best"]
+
+
+def clock_columns(runs: pd.DataFrame) -> tuple[str, str]:
+    """The columns of wall and CPU time until what :func:`generations_column` counts."""
+    if generations_column(runs) == COUNTED["stop"]:
+        return "wall_s", "cpu_s"
+    return "time_to_best_s", "cpu_to_best_s"
 
 
 def cut_off(runs: pd.DataFrame) -> NDArray[np.bool_]:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from suite.dynamic.plain import from_data
 from suite.errors import KbgaBenchError, StoreError
+from suite.report.alignment import without_repeats
 from suite.report.anytime import Steps, steps_of
 from suite.report.clock import fair
 from suite.report.comparison_figures import comparison_figures
@@ -96,7 +97,8 @@ def write_results(
     files = write_tables([t for t in tables if not t.detail], folder, Format.MARKDOWN)
     files += write_tables(tables, folder, Format.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
-    for name, figure in _figures(store, fair(current), scenes, leave_out):
+    shown = fair(without_repeats(current))
+    for name, figure in _figures(store, shown, scenes, leave_out):
         file = folder / f"{name}.{figures}"
         save(figure, file)
         files.append(file)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from suite.paper.reported import KBGA, PLAIN_GA, find
+from suite.paper.reported import KBGA, KBGA_PLUS, PLAIN_GA, find
 from suite.report.compared import (
     NOTE,
     PENALTIES_NOTE,
@@ -47,8 +47,9 @@ class Study:
     title : of its tables.
     setting : what varies.
     symbol : its name in columns and on axes.
-    planners : those whose variants are compared.
-    reference : the value that the others are compared with: the planners' default.
+    planners : those whose variants are compared; with the paper's KBGA, ours as well.
+    reference : the value that the others are compared with: the default of the planners, or of
+        most of them.
     panels : columns of :func:`sweep` that the figure shows for each scene.
     logarithmic : whether the values stand on a logarithmic axis.
     """
@@ -146,18 +147,25 @@ def sweep(runs: pd.DataFrame, study: Study, first: pd.DataFrame | None = None) -
         _paper_time(study, scene, value)
         for scene, value in zip(frame["scene"], frame["value"], strict=True)
     ]
-    frame["paper time (s)"] = pd.Series(times, dtype="float64")
+    papers = ~of_kbga_plus(frame)
+    frame["paper time (s)"] = pd.Series(times, dtype="float64").where(papers)
     frame["paper ratio"] = frame["paper time (s)"] / [
         _paper_time(study, scene, study.reference) or float("nan") for scene in frame["scene"]
     ]
     return frame
 
 
+def of_kbga_plus(frame: pd.DataFrame) -> "pd.Series[bool]":
+    """Which rows of a comparison are of our own planner, of which the paper says nothing."""
+    return frame["family"].str.match(f"{KBGA_PLUS}(?:,|$)")
+
+
 def _rows(runs: pd.DataFrame, study: Study) -> pd.DataFrame:
     """The runs of families in which the setting takes several values, with these beside them."""
     settings = settings_of(runs)
     has_it = pd.Series([study.setting in s for s in settings], index=runs.index, dtype=bool)
-    answers = runs["planner"].isin(study.planners) & has_it
+    planners = [*study.planners, *([KBGA_PLUS] if KBGA in study.planners else [])]
+    answers = runs["planner"].isin(planners) & has_it
     runs, settings = runs[answers], settings[answers]
     if runs.empty:
         return runs
@@ -252,9 +260,9 @@ def study_tables(runs: pd.DataFrame, first: pd.DataFrame | None = None) -> list[
         if study is MUTATION_RATE and BEST_RATE_SCENE in set(frame["scene"]):
             tables.append(_best_table(runs, study, frame))
         tables.append(_rows_table(study, frame))
-    counted = obstacles(runs)
-    if not counted.empty:
-        tables.append(_obstacles_table(counted))
+    counted = [obstacles(runs, name) for name in (KBGA, KBGA_PLUS)]
+    if not all(frame.empty for frame in counted):
+        tables.append(_obstacles_table(pd.concat(frame for frame in counted if len(frame))))
     return tables
 
 
@@ -357,13 +365,15 @@ FEWEST = 20.0
 """Of the paper, Fig. 14a."""
 
 
-def obstacles(runs: pd.DataFrame) -> pd.DataFrame:
+def obstacles(runs: pd.DataFrame, planner: str = KBGA) -> pd.DataFrame:
     """Section IV: KBGA among more and more obstacles, compared with 20.
 
     Parameters
     ----------
     runs : DataFrame
         As :func:`suite.store.read_runs` gives it.
+    planner : str
+        Name of the variant; only the paper's has the paper's times beside it.
 
     Returns
     -------
@@ -371,7 +381,7 @@ def obstacles(runs: pd.DataFrame) -> pd.DataFrame:
         A row for each scene that counts its obstacles in its name; empty if there is but one.
     """
     counts = runs["scene"].str.extract(f"^{COUNTED.pattern}$", expand=False)
-    wanted = counts.notna() & (runs["variant"] == KBGA)
+    wanted = counts.notna() & (runs["variant"] == planner)
     rows = runs[wanted].assign(value=counts[wanted].astype("float64"))
     if rows["value"].nunique() < 2:
         return rows.iloc[:0]
@@ -382,7 +392,8 @@ def obstacles(runs: pd.DataFrame) -> pd.DataFrame:
         1e6 * float((group["cpu_s"] / group["checks"].astype("float64")).median())
         for _, group in rows.groupby("scene", sort=False)
     ]
-    paper = {r.scene: r.value for r in find(planner=KBGA, quantity="time_s", statistic="mean")}
+    frame.insert(1, "planner", planner)
+    paper = {r.scene: r.value for r in find(planner=planner, quantity="time_s", statistic="mean")}
     frame["paper time (s)"] = [paper.get(scene) for scene in frame["scene"]]
     frame["paper time (s)"] = frame["paper time (s)"].astype("float64")
     least = frame.loc[frame["value"] == FEWEST, "paper time (s)"]
@@ -392,11 +403,13 @@ def obstacles(runs: pd.DataFrame) -> pd.DataFrame:
 
 def _obstacles_table(frame: pd.DataFrame) -> Table:
     columns = [
-        "scene", "obstacles", "runs", "feasible", "cost mean", "cost SD", "gap mean (%)",
+        "scene", "planner", "obstacles", "runs", "feasible", "cost mean", "cost SD", "gap mean (%)",
         "gen to best mean", "checks mean", "cpu per check (us)", "cpu to best mean (ms)",
         "cpu total median (ms)", "ratio to best", "ratio total", "paper time (s)", "paper ratio",
     ]  # fmt: skip
     shown = frame.assign(obstacles=_values(frame))
+    if len(set(frame["planner"])) == 1:
+        columns.remove("planner")
     note = (
         "obstacles: as many as the scene's name says; a concave one counts as its convex parts. "
         f"{NOTE} cpu per check: that of a whole run by its checks, median. "

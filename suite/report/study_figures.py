@@ -19,7 +19,7 @@ from matplotlib.ticker import FixedLocator, NullLocator
 from suite.report.ablation import NOTHING, ablation
 from suite.report.compared import glance
 from suite.report.figures import LINES
-from suite.report.studies import RESOLUTION, STUDIES, Study, obstacles, sweep
+from suite.report.studies import RESOLUTION, STUDIES, Study, obstacles, of_kbga_plus, sweep
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "<", "*")
 PAPER = {"color": "black", "linestyle": "--", "marker": "x", "markersize": 7, "linewidth": 1.4}
@@ -56,6 +56,9 @@ def study_figures(runs: pd.DataFrame) -> dict[str, Figure]:
     figures = {}
     for study in STUDIES:
         frame = sweep(runs, study)
+        if study is RESOLUTION and not frame.empty:
+            # A line for each scene has room for one planner.
+            frame = frame[~of_kbga_plus(frame)]
         if not frame.empty:
             plot = plot_resolution if study is RESOLUTION else plot_sweep
             figures[f"study-{study.name}"] = plot(frame, study)

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 
 from suite.report.ablation import ablation_tables
+from suite.report.alignment import alignment_tables, without_repeats
 from suite.report.anytime import Steps, steps_of
 from suite.report.budgets import budget_tables
 from suite.report.clock import dropped_note, fair, joined
@@ -69,6 +70,7 @@ def all_tables(
     kept, busy = fair(current), dropped_note(current)
     driven = kept[is_simulated(kept)]
     kept = kept[~is_simulated(kept)]
+    aligned, kept = alignment_tables(kept), without_repeats(kept)
     moving = []
     if simulations is not None and replans is not None:
         moving = simulated_tables(driven, simulations, replans)
@@ -80,6 +82,7 @@ def all_tables(
     return _paper_last(
         [
             *summary_tables(kept, left_out),
+            *aligned,
             *moving,
             *study_tables(kept, first),
             *ablation_tables(kept, COST_NOTE),

@@ -28,7 +28,7 @@ from suite.report.agreement import (
     shares_differ,
 )
 from suite.report.compared import settings_of
-from suite.report.generations import cut_off, generations_column
+from suite.report.generations import clock_columns, cut_off, generations_column
 from suite.report.simulated import UNKNOWN, reactions
 from suite.report.statistics import Array
 from suite.report.summary import feasible
@@ -283,9 +283,12 @@ _STATISTICS: Mapping[str, Callable[[Reported, pd.DataFrame], Verdict]] = {
 
 def _values(figure: Reported, ours: pd.DataFrame) -> Array:
     """The quantity of each of our runs that found a path and has it."""
-    column = {"cost": "cost", "time_s": "time_to_best_s"}.get(figure.quantity)
-    column = column or generations_column(ours)
-    return feasible(ours)[column].dropna().to_numpy(dtype=np.float64)
+    columns = {
+        "cost": "cost",
+        "time_s": clock_columns(ours)[0],
+        "generations": generations_column(ours),
+    }
+    return feasible(ours)[columns[figure.quantity]].dropna().to_numpy(dtype=np.float64)
 
 
 def _not_asked(figure: Reported, ours: pd.DataFrame, shown: float) -> Verdict | None:

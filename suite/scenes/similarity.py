@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from shapely.geometry import LineString, Polygon
+from shapely.geometry import LineString, Point, Polygon
 
 from suite.dynamics import Dynamics, Removal, make_motion
 from suite.errors import SceneError
@@ -97,9 +97,7 @@ def modified(scene: Scene, modifiers: Modifiers, *, inflate: float = 0.0) -> Sce
         )
     xmin, ymin, xmax, ymax = scene.bounds
     move = make_similarity(modifiers, np.array([(xmin + xmax) / 2.0, (ymin + ymax) / 2.0]))
-    room, *polygons = (
-        shapely.transform(polygon, move.points) for polygon in _with_contacts(scene)
-    )
+    room, *polygons = (shapely.transform(polygon, move.points) for polygon in _with_contacts(scene))
     return make_scene(
         name,
         room,
@@ -120,7 +118,7 @@ def _with_contacts(scene: Scene) -> list[Polygon]:
     drawn = [shapely.transform(polygon, _on_grid) for polygon in polygons]
     ends = [point for query in scene.queries for point in (query.start, query.goal)]
     places = np.unique(np.vstack([shapely.get_coordinates(drawn), *ends]), axis=0)
-    tree = shapely.STRtree(shapely.points(places))
+    tree = shapely.STRtree([Point(place) for place in places])
     return [
         Polygon(
             _with_vertices(polygon, polygon.exterior, places, tree),

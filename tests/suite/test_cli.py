@@ -17,7 +17,7 @@ from suite.harness.run import FAILURES
 from suite.planner import PlanStatus
 from suite.scene import Obstacle, make_scene
 from suite.scene_file import read_scene, write_scene
-from suite.scenes.catalogue import load_scene
+from suite.scenes.catalogue import aligned_names, load_scene
 from suite.store import read_runs
 from tests.suite.commands import Done, in_own_process
 
@@ -68,8 +68,9 @@ def test_lists_are_json_for_programs(kbga_bench):
     scattered = next(scene for scene in scenes if scene["name"] == "scattered_300")
     assert (scattered["generated"], scattered["parts"], scattered["path"]) == (True, 300, None)
     assert set(scattered) == set(zigzag)
-    dynamic = [scene["name"] for scene in scenes if scene["dynamic"]]
+    dynamic = [scene["name"] for scene in scenes if scene["dynamic"] and not scene["control"]]
     assert dynamic == ["door", "unknown_obstacles", "moving-0"]
+    assert [scene["name"] for scene in scenes if scene["control"]] == aligned_names()
     matrices = json.loads(kbga_bench("list", "matrices", "--format", "json").out)
     paper = next(matrix for matrix in matrices if matrix["name"] == "paper-static")
     assert paper["runs"] == 8 * 6 * 20
@@ -102,7 +103,8 @@ def test_a_simulation_says_how_the_robot_fared_as_json_and_in_words(kbga_bench):
     assert (done["reached"], done["hits"], done["opening"]) == (True, [], "right")
     assert done["world"]["speed"] == 5.0
     first, *_, last = done["trajectory"]
-    assert (first, last) == ([0.0, 70.0, 6.0], [done["time"], 88.0, 94.0])
+    ends = load_scene("door").query()
+    assert (first, last) == ([0.0, *ends.start], [done["time"], *ends.goal])
     assert {"time", "latency_s", "cost", "status"} <= set(done["replans"][0])
     assert done["waiting_time"] == 0.0
     said = kbga_bench(*arguments).out
@@ -197,8 +199,8 @@ def test_a_planner_that_refuses_is_not_simulated(kbga_bench):
     said = kbga_bench(*wanted, code=1).out
     assert "door / ompl-rrtstar / seed 0: refused" in said
     assert (
-        "ompl-rrtstar keeps no budget of generations. Give one that it keeps: checks, cpu_s, wall_s."
-        in said
+        "ompl-rrtstar keeps no budget of generations. "
+        "Give one that it keeps: checks, cpu_s, wall_s." in said
     )
 
 
@@ -272,7 +274,7 @@ def test_plan_says_all_in_json(kbga_bench, hostile, wall_file):
     assert found["status"] == "solved"
     assert found["settings"] == {"reach": 0.5}
     assert found["budget"] == {"wall_s": None, "generations": 5, "checks": None}
-    assert found["collision_checks"] == 9
+    assert (found["collision_checks"], found["computed_checks"]) == (9, None)
     assert (found["generations"], found["generation_of_best"]) == (5, 3)
     assert [cost for _, cost in found["events"]] == [100.0, 50.0]
     assert found["time_to_best_s"] <= found["wall_s"]
@@ -553,3 +555,33 @@ def test_a_row_that_is_not_there_cannot_be_repeated(error_of, filled):
     assert "no row has a key that begins with 'ffffffff00'" in error_of(
         "rerun", filled, "ffffffff00"
     )
+
+
+# A machine that is busy
+
+
+def test_a_plan_may_have_a_budget_of_cpu_time(kbga_bench, hostile, wall_file, tmp_path):
+    drowsy = ("--planner", "drowsy", "--set", f"folder={tmp_path}", "--cpu-s", 2)
+    found = json.loads(kbga_bench("plan", wall_file, *drowsy, "--format", "json").out)
+    assert found["budget"] == {"wall_s": None, "generations": None, "checks": None, "cpu_s": 2.0}
+    assert (found["collision_checks"], found["computed_checks"]) == (7, 3)
+    assert found["contended"]
+    assert (
+        "7, 3 of them computed, the rest from memory" in kbga_bench("plan", wall_file, *drowsy).out
+    )
+
+
+def test_who_keeps_no_cpu_time_says_so(kbga_bench, hostile, wall_file):
+    done = kbga_bench("plan", wall_file, "--planner", "wanderer", "--cpu-s", 2, code=1)
+    assert "wanderer keeps no budget of cpu_s. Give one that it keeps: generations" in done.out
+
+
+def test_run_tries_contended_rows_again_while_it_has_patience(kbga_bench, matrix_file, tmp_path):
+    run = ("run", matrix_file("drowsy"), "--store", tmp_path / "s.db")
+    folder = matrix_file("drowsy")
+    folder.write_text(f'{folder.read_text()}settings = {{folder = "{tmp_path}"}}\n')
+    assert "2 rows had no core to run on" in kbga_bench(*run).out
+    assert "2 rows had no core for themselves" in kbga_bench("status", tmp_path / "s.db").out
+    said = kbga_bench(*run, "--patience", 20).out
+    assert "2 were there, 0 ran now" in said
+    assert "2 rows had no core and ran again; none still are contended." in said

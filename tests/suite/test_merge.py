@@ -1,6 +1,8 @@
 """Stores that several machines filled, taken into one: nothing is lost, nothing is doubled."""
 
 import json
+import sqlite3
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -164,3 +166,20 @@ def test_conflicts_that_the_other_store_had_are_kept(store_of):
     with open_store(mine) as store:
         merge(store, [first])
     assert read_conflicts(mine)["source"].tolist() == [str(second)]
+
+
+def test_other_computed_checks_are_another_outcome(store_of):
+    mine, other = store_of("a", of(0, computed_checks=9)), store_of("b", of(0, computed_checks=8))
+    with open_store(mine) as store:
+        (done,) = merge(store, [other])
+    assert len(done.conflicts) == 1
+
+
+def test_a_store_that_is_older_than_a_column_is_taken_in_without_it(store_of):
+    mine, other = store_of("a", of(0, computed_checks=9)), store_of("b", of(0), of(1))
+    with closing(sqlite3.connect(other)) as connection, connection:
+        for name in ("computed_checks", "attempts", "budget_cpu_s"):
+            connection.execute(f"ALTER TABLE runs DROP COLUMN {name}")
+    with open_store(mine) as store:
+        (done,) = merge(store, [other])
+    assert (done.added, done.same, done.conflicts) == (1, 1, ())

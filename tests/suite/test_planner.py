@@ -37,6 +37,10 @@ def why(planner, **budget):
             (), {"checks": 200, "generations": 1},
             "keeps keeps no budget of generations or checks. It keeps none: give none.",
         ),
+        (
+            ("wall_s", "generations"), {"cpu_s": 2.0},
+            "keeps keeps no budget of cpu_s. Give one that it keeps: generations, wall_s.",
+        ),
     ],
 )  # fmt: skip
 def test_a_limit_that_nobody_would_keep_is_no_run(kept, budget, reason):
@@ -51,6 +55,9 @@ def test_a_limit_that_nobody_would_keep_is_no_run(kept, budget, reason):
         ((), {}),
         ((), {"wall_s": 1.0}),
         (("checks",), {"wall_s": 1.0, "generations": 5}),
+        (("cpu_s",), {"cpu_s": 1.0}),
+        (("checks",), {"checks": 5, "cpu_s": 1.0}),
+        ((), {"wall_s": 1.0, "cpu_s": 1.0}),
     ],
 )
 def test_one_limit_that_is_kept_will_do_and_wall_time_is_watched_anyway(kept, budget):

@@ -6,10 +6,11 @@ from contextlib import closing
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from suite.errors import StoreError
-from suite.planner import PlanStatus
+from suite.planner import Budget, PlanStatus
 from suite.record import World, short_hash
 from suite.store import (
     open_store,
@@ -23,6 +24,7 @@ from suite.store import (
     read_simulations,
     read_traces,
 )
+from suite.stored_cells import stored_cell
 from tests.suite.harness.records import make_cell, make_record
 
 
@@ -293,3 +295,51 @@ def test_a_folder_that_cannot_be_written_is_an_error_that_says_so(file):
 def test_a_file_system_that_takes_no_files_is_an_error_that_says_so():
     with pytest.raises(StoreError, match=r"/proc/store\.db: can't be opened or written"):
         open_store(Path("/proc/store.db"))
+
+
+ADDED = ("computed_checks", "attempts", "budget_cpu_s")
+
+
+def test_computed_checks_and_cpu_budgets_come_back_beside_what_they_belong_to(file):
+    cell = make_cell(budget=Budget(cpu_s=2.0))
+    filled(file, make_record(cell, checks=900, computed_checks=40), make_record(make_cell(seed=1)))
+    runs = read_runs(file)
+    assert runs["computed_checks"].tolist() == [40, pd.NA]
+    assert runs["budget_cpu_s"].iloc[0] == 2.0
+    assert np.isnan(runs["budget_cpu_s"].iloc[1])
+    names = list(runs.columns)
+    assert names[names.index("checks") + 1] == "computed_checks"
+    assert stored_cell(runs.to_dict("records")[0]).key == cell.key
+    assert stored_cell(runs.to_dict("records")[1]).key == make_cell(seed=1).key
+
+
+def older(file):
+    """Make a store what it was before these columns."""
+    with closing(sqlite3.connect(file)) as connection, connection:
+        for name in ADDED:
+            connection.execute(f"ALTER TABLE runs DROP COLUMN {name}")
+
+
+def test_an_older_store_is_read_as_it_is_and_written_with_the_new_columns(file):
+    filled(file, make_record())
+    names = list(read_runs(file).columns)
+    older(file)
+    runs = read_runs(file)
+    assert list(runs.columns) == names
+    assert runs[list(ADDED)].isna().all(axis=None)
+    assert stored_cell(runs.to_dict("records")[0]).key == make_cell().key
+    with open_store(file) as store:
+        assert store.attempts() == {make_cell().key: 1}
+        store.begin_session({})
+        store.add(make_record(make_cell(seed=1), computed_checks=12))
+    runs = read_runs(file)
+    assert list(runs.columns) == names
+    assert runs["computed_checks"].tolist() == [pd.NA, 12]
+
+
+def test_contended_rows_are_named_and_their_attempts_counted(file):
+    filled(file, make_record(contended=True), make_record(make_cell(seed=1)))
+    with open_store(file) as store:
+        assert store.contended() == {make_cell().key}
+        store.count_attempt(make_cell().key)
+    assert read_runs(file)["attempts"].tolist() == [2, 1]

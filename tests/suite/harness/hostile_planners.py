@@ -633,6 +633,13 @@ class CountsBeyondMeasure(_Base):
         return Plan(PlanStatus.SOLVED, self.path(scene, query), checks=10**30)
 
 
+class ComputesMoreThanItAsks(_Base):
+    name = "computes-more-than-it-asks"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        return Plan(PlanStatus.SOLVED, self.path(scene, query), checks=3, computed_checks=4)
+
+
 class SaysHalfACharacter(_Base):
     """Names a file whose name is not text."""
 

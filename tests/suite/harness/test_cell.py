@@ -122,3 +122,19 @@ def test_a_scene_that_changed_after_the_matrix_was_read_is_an_error(wall_file):
     record = run_cell(changed)
     assert record.status is PlanStatus.ERROR
     assert "is not the scene any more that it was at first" in record.reason
+
+
+def test_checks_that_were_asked_stand_beside_those_that_were_computed(run, tmp_path):
+    record = run("drowsy", settings={"folder": str(tmp_path)})
+    assert (record.checks, record.computed_checks) == (7, 3)
+    assert run("wanderer").computed_checks is None
+
+
+def test_nobody_computes_what_was_not_asked(run):
+    record = run("computes-more-than-it-asks")
+    assert record.status is PlanStatus.ERROR
+    assert "computed_checks of the plan are 4, and its checks 3" in record.reason
+
+
+def test_a_run_that_waited_is_contended(run):
+    assert run("sleeper").contended

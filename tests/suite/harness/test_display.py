@@ -80,3 +80,10 @@ def test_a_terminal_gets_a_bar_that_names_what_runs():
     assert "1/4" in text
     assert "1 failed" in text
     assert "zigzag / kbga / seed 1" in text
+
+
+def test_runs_that_are_repeated_are_counted_by_themselves():
+    states = [Progress(4, 4, 0, repeats_wanted=3, repeats_done=i) for i in (1, 3)]
+    assert "4 of 4 done, 0 left, contended runs again: 3 of 3" in shown(*states)
+    assert "contended runs again" in shown(*states, terminal=True)
+    assert "contended" not in shown(Progress(4, 4, 0), terminal=True)

@@ -33,8 +33,9 @@ def test_on_another_scene_it_takes_as_long_as_on_those_that_are_known(rows):
     assert told.seconds == pytest.approx(3.0, abs=0.1)
 
 
-def test_a_variant_that_never_ran_is_given_its_budget():
-    told = forecast(1, [make_cell(budget=Budget(wall_s=1.5))], NOTHING, jobs=1)
+@pytest.mark.parametrize("budget", [Budget(wall_s=1.5), Budget(cpu_s=1.5)])
+def test_a_variant_that_never_ran_is_given_its_budget(budget):
+    told = forecast(1, [make_cell(budget=budget)], NOTHING, jobs=1)
     assert told.seconds == pytest.approx(1.5, abs=0.1)
 
 

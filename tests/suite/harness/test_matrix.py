@@ -1,11 +1,13 @@
 import textwrap
+import tomllib
 
 import pytest
 
 from suite.errors import MatrixError
-from suite.harness.matrix import Limits, load_matrix, matrix_names
+from suite.harness.matrix import FOLDER, Limits, load_matrix, matrix_names
 from suite.planner import Budget
 from suite.plugins import available_planners
+from suite.scenes.catalogue import scene_names
 
 GOOD = """
 name = "walls"
@@ -70,6 +72,41 @@ def test_scenes_may_be_files_beside_the_matrix(written, wall_file, tmp_path):
     assert matrix.sources == (str(tmp_path / "my.geojson"), "maze")
 
 
+def test_a_scene_may_be_modified_and_a_range_of_twins_stands_for_each(written, wall_file, tmp_path):
+    (tmp_path / "my.geojson").write_text(wall_file.read_text())
+    scenes = '"my.geojson@turn=5", "zigzag@twin=1..2"'
+    matrix = load_matrix(written(GOOD.replace('"zigzag"', scenes)))
+    assert [s.name for s in matrix.scenes] == ["wall@turn=5", "zigzag@twin=1", "zigzag@twin=2"]
+    assert matrix.sources[0] == f"{tmp_path / 'my.geojson'}@turn=5"
+    assert matrix.sources[1:] == ("zigzag@twin=1", "zigzag@twin=2")
+
+
+def test_a_file_whose_name_holds_the_mark_is_a_file(written, wall_file, tmp_path):
+    (tmp_path / "zigzag@turn=5").write_text(wall_file.read_text())
+    matrix = load_matrix(written(GOOD.replace('"zigzag"', '"./zigzag@turn=5"')))
+    assert [s.name for s in matrix.scenes] == ["wall"]
+
+
+def test_a_scene_may_have_seeds_of_its_own(written):
+    own = '"maze", { scene = "zigzag@twin=1..2", seeds = [7] }'
+    matrix = load_matrix(written(GOOD.replace('"zigzag"', own)))
+    cells = [cell for cell in matrix.cells() if cell.variant == "again"]
+    assert [(c.scene, c.seed) for c in cells] == [
+        ("maze", 0), ("maze", 1), ("maze", 2), ("zigzag@twin=1", 7), ("zigzag@twin=2", 7),
+    ]  # fmt: skip
+    quick = [cell for cell in matrix.cells(quick=True) if cell.variant == "again"]
+    assert [cell.seed for cell in quick] == [0, 1, 7, 7]
+    assert {c.key for c in quick} < {c.key for c in cells}
+
+
+def test_the_matrix_of_alignment_has_every_scene_as_drawn_and_ten_twins_of_each():
+    with (FOLDER / "alignment.toml").open("rb") as file:
+        entries = tomllib.load(file)["scenes"]
+    drawn = [*scene_names(), "maze_aligned", "zigzag_aligned", "double_u_aligned"]
+    twins = [{"scene": f"{name}@twin=1..10", "seeds": 5} for name in drawn]
+    assert entries == drawn + twins
+
+
 def test_a_list_of_seeds_is_taken_as_it_is(written):
     matrix = load_matrix(written(GOOD.replace("seeds = 3", "seeds = [5, 2]")))
     assert matrix.seeds == (5, 2)
@@ -113,6 +150,13 @@ def test_a_plugin_that_cannot_be_imported_is_no_reason_to_refuse_the_matrix(writ
         ('["zigzag"]', "[]", "scenes is []"),
         ('["zigzag"]', '["zigzga"]', "Did you mean 'zigzag'?"),
         ('["zigzag"]', '["zigzag", "zigzag"]', "two scenes are named 'zigzag'"),
+        ('["zigzag"]', '"zigzag"', "scenes is 'zigzag'. Give a list of names, files, or tables"),
+        ('["zigzag"]', "[3]", "scenes is [3]"),
+        ('["zigzag"]', '["zigzag@twin=3..1"]', "scenes: zigzag@twin=3..1: its twins go from 3"),
+        ('["zigzag"]', '["zigzag@trun=3"]', "no modifier 'trun'"),
+        ('["zigzag"]', '[{ scen = "maze" }]', "scene 1: unknown key 'scen'"),
+        ('["zigzag"]', "[{ seeds = 3 }]", "scene 1: 'scene' is missing"),
+        ('["zigzag"]', '[{ scene = "maze", seeds = 0 }]', "scene 1: seeds is 0. Give 1 or more."),
         ('["zigzag"]', '["nowhere.geojson"]', "nowhere.geojson: can't be read"),
         ("grace_s = 2", "grace_s = 0", "walls.toml, limits: grace_s is 0. It must be above 0."),
         ("grace_s = 2", 'grace_s = "2"', "grace_s is '2'. Give a number."),
@@ -224,3 +268,15 @@ def test_a_world_that_cannot_be_is_refused(written, old, new, message):
 def test_only_simulated_runs_can_be_cold(written):
     said = refused(written(GOOD + "cold = true\n"))
     assert "unknown key 'cold'" in said
+
+
+def test_a_budget_may_be_of_cpu_time(written):
+    matrix = load_matrix(written(GOOD.replace("wall_s = 1 }", "cpu_s = 2 }")))
+    assert matrix.variants[1].budget == Budget(generations=10, cpu_s=2)
+
+
+def test_a_run_of_so_much_cpu_time_has_much_more_wall_time_before_it_is_killed():
+    limits = Limits(grace_s=10.0)
+    assert limits.plan_s(Budget(cpu_s=2.0)) == limits.cpu_stretch * 2.0 + 10.0
+    assert limits.plan_s(Budget(cpu_s=2.0)) > 4 * limits.plan_s(Budget(wall_s=2.0)) - 10.0
+    assert limits.plan_s(Budget(wall_s=1.0, cpu_s=9.0)) == limits.plan_s(Budget(wall_s=1.0))

@@ -113,3 +113,7 @@ def test_another_world_is_another_row(file_of):
         for world in (None, world_for(source), world_for(source, {"speed": 3.0}))
     }
     assert len(keys) == 3
+
+
+def test_a_drive_whose_planner_waited_is_contended(hostile, file_of):
+    assert run(file_of(WALL), "sleeper").contended

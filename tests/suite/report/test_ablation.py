@@ -92,6 +92,20 @@ def test_both_readings_stand_beside_the_papers_figures():
     assert plain["ours cost with penalties mean"] == (300.0 + 1000.0) / 2
 
 
+def test_our_own_planner_is_ablated_beside_and_has_no_figures_of_the_paper():
+    records = [kbga(160.0), kbga(250.0, "crossover", "mutation")]
+    ours = [
+        kbga(156.0, name="kbga-plus", planner="kbga-plus"),
+        kbga(157.0, "crossover", "mutation", name="kbga-plus-without", planner="kbga-plus"),
+    ]
+    frame = paper_ablation(runs_of(*records, *ours)).set_index("planner")
+    assert frame.loc["kbga-8", "paper cost mean"] == 156.31
+    papers = [column for column in frame if column.startswith("paper")]
+    for name in ("kbga-plus", "kbga-plus-without"):
+        assert not any(value and value == value for value in frame.loc[name, papers])
+    assert frame.loc["kbga-plus-without", "ours cost mean"] == 157.0
+
+
 def test_where_the_paper_never_found_a_path_it_is_said_so():
     frame = paper_ablation(
         runs_of(
@@ -114,14 +128,19 @@ def test_the_glance_shows_failures_and_the_note_says_why_there_are_two_gas_witho
     assert "plain-ga is the paper's GA" in tables["study-ablation"].note
 
 
-def test_the_matrix_switches_off_every_operator_in_both_readings_and_nothing_else():
-    variants = [v for v in load_matrix("ablation").variants if v.plugin.name == "kbga"]
-    for rounds, stagnation in ((8, 15), (1, 30)):
-        mine = [dict(v.settings) for v in variants if v.settings["rounds"] == rounds]
-        assert {settings["stagnation"] for settings in mine} == {stagnation}
-        off = {
-            tuple(name for name in OPERATORS if settings[f"{name}_probability"] == 0.0)
-            for settings in mine
-        }
-        singles = {(name,) for name in OPERATORS}
-        assert off == {(), SPECIALISED, ("crossover", "mutation")} | singles
+@pytest.mark.parametrize("planner", ["kbga", "kbga-plus"])
+def test_the_matrix_switches_off_every_operator_of_both_planners_and_nothing_else(planner):
+    variants = [v for v in load_matrix("ablation").variants if v.plugin.name == planner]
+    mine = [dict(v.settings) for v in variants]
+    (whole,) = [s for v, s in zip(variants, mine, strict=True) if v.name == planner]
+    probabilities = {f"{name}_probability" for name in OPERATORS}
+    for settings in mine:
+        changed = {name for name, value in settings.items() if value != whole[name]}
+        assert changed <= probabilities
+        assert {settings[name] for name in changed} <= {0.0}
+    off = {
+        tuple(name for name in OPERATORS if settings[f"{name}_probability"] == 0.0)
+        for settings in mine
+    }
+    singles = {(name,) for name in OPERATORS}
+    assert off == {(), SPECIALISED, ("crossover", "mutation")} | singles

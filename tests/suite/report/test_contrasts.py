@@ -112,6 +112,7 @@ def test_our_own_planner_stands_beside_without_a_verdict():
     ours = frame[frame["one"] == "kbga-plus"]
     assert len(ours) == 2
     assert set(ours["verdict"]) == {""}
+    assert ours["paper"].isna().all()
     assert set(frame.loc[frame["one"] == "kbga", "verdict"]) <= {AGREES, DIFFERS, NOT_COMPARABLE}
 
 

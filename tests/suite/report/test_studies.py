@@ -188,6 +188,44 @@ def test_the_number_of_obstacles_is_compared_with_20_across_scenes():
     assert frame["paper ratio"].isna().tolist() == [False, False, True]
 
 
+def test_our_own_planner_is_studied_beside_and_has_no_times_of_the_paper():
+    def both(make):
+        return [make("kbga"), make("kbga-plus")]
+
+    records = [
+        record
+        for resolution in (100, 200)
+        for record in both(
+            lambda name, r=resolution: run(
+                f"{name}-resolution-{r}", {"resolution": r}, 110.0, scene="unstructured",
+                planner=name,
+            )
+        )
+    ]  # fmt: skip
+    frame = sweep(runs_of(*records), RESOLUTION).set_index(["family", "value"])
+    assert frame.loc["kbga", "paper time (s)"].tolist() == [7.81, 9.03]
+    assert frame.loc["kbga-plus", "paper time (s)"].isna().all()
+    counted = runs_of(
+        *(
+            record
+            for n in (20, 30)
+            for record in both(
+                lambda name, n=n: run(name, {}, 110.0, scene=f"obstacles_{n}", planner=name)
+            )
+        )
+    )
+    (table,) = [t for t in study_tables(counted) if t.name == "study-obstacles"]
+    assert table.frame["planner"].tolist() == ["kbga"] * 2 + ["kbga-plus"] * 2
+    assert table.frame["paper time (s)"].notna().tolist() == [True, True, False, False]
+    assert "planner" not in obstacles_table_of("kbga", counted)
+
+
+def obstacles_table_of(planner, runs):
+    (table,) = [t for t in study_tables(runs[runs["variant"] == planner])
+                if t.name == "study-obstacles"]  # fmt: skip
+    return table.frame
+
+
 def test_a_single_number_of_obstacles_and_other_planners_make_no_such_table():
     assert obstacles(runs_of(run("kbga", {}, 110.0, scene="obstacles_20"))).empty
     others = [run("rrt", {}, 110.0, scene=f"obstacles_{n}") for n in (20, 30)]

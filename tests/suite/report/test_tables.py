@@ -141,7 +141,7 @@ def test_table_1_counts_feasible_runs_and_shows_penalised_costs_apart(runs_of):
     frame = table_1(runs_of)
     assert frame.loc[("feasible runs", ""), "ours without"] == 1
     assert frame.loc[("number of runs", ""), "ours without"] == 2
-    assert frame.loc[("cost, penalties included", "mean"), "ours without"] == 400.0
+    assert frame.loc[("cost, all runs, penalties included", "mean"), "ours without"] == 400.0
 
 
 def test_static_results_show_both_of_the_papers_contradicting_deviations(runs_of):
@@ -165,6 +165,43 @@ def test_static_results_of_clustered_and_of_the_numbers_of_obstacles(runs_of):
     assert cost["paper mean"].isna().all()
     time = frame[(frame["scene"] == "obstacles_30") & (frame["quantity"] == "time needed (s)")]
     assert time["paper mean"].tolist() == [11.54]
+
+
+def test_both_readings_of_the_generations_stand_beside_the_papers(runs_of):
+    run = solved(156.0, generation_of_best=30, generations=45)
+    runs = runs_of(run, exhausted(generations=100))
+    static = paper_static(runs)
+    static = static[static["paper's place"] == "Table 1"].set_index("quantity")
+    assert static.loc["generations needed", "ours mean"] == 30.0
+    assert static.loc["generations until the stop", "ours mean"] == 45.0
+    assert static.loc["generations needed", "cut off"] == 0
+    table = paper_table_1(runs).set_index(["quantity", "statistic"])
+    assert table.loc[("generations until the stop", "mean"), "ours with"] == 45.0
+    assert table.loc[("runs cut off by a limit", ""), "ours without"] == 1, "by its budget of 100"
+    stop = runs.assign(settings='{"generations_counted": "stop"}')
+    needed = paper_static(stop).set_index("quantity").loc["generations needed", "ours mean"]
+    assert set(needed) == {45.0}
+    assert "generations until the best" in set(paper_table_1(stop)["quantity"])
+
+
+def test_the_excess_over_the_best_stands_beside_the_cost(runs_of):
+    frame = paper_static(runs_of(solved(103.0, scene="maze")))
+    cost = frame[frame["quantity"] == "cost"]
+    assert cost["paper over best (%)"].tolist() == pytest.approx([1.70], abs=0.01)
+    assert cost["ours over optimum (%)"].tolist() == pytest.approx([3.0])
+
+
+def test_our_own_planner_has_columns_of_its_own_where_it_was_run(runs_of):
+    paper = [solved(156.0), exhausted()]
+    with_plus = runs_of(*paper, solved(155.8, variant="kbga-plus"))
+    static, table = paper_static(with_plus), paper_table_1(with_plus)
+    cost = static[static["quantity"] == "cost"]
+    assert set(cost["ours mean"]) == {156.0}
+    assert set(cost["ours mean, kbga-plus"]) == {155.8}
+    assert table["ours with, kbga-plus"].tolist()[:3] == [1, 1, 155.8]
+    without = with_plus[with_plus["variant"] != "kbga-plus"]
+    for frame in (paper_static(without), paper_table_1(without)):
+        assert not any("plus" in column for column in frame)
 
 
 def test_tables_that_the_runs_cannot_answer_are_left_out(runs_of):
