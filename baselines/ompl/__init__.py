@@ -10,6 +10,7 @@ ompl-bitstar           BITstar          anytime   its path is the straight line
 ompl-aorrtc            AORRTC           anytime   its path is the straight line
 ompl-prm               PRM              anytime
 ompl-prmstar           PRMstar          anytime
+ompl-shortcut          RRTConnect       anytime   its path is the straight line
 ompl-rrt               RRT              one-shot  it has a path, and that is simplified
 ompl-rrtconnect        RRTConnect       one-shot  it has a path, and that is simplified
 ompl-fmt               FMT              one-shot  it has a path, or has no samples left (a setting)

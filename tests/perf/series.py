@@ -35,8 +35,16 @@ OMPL_PLANNERS = (
     "ompl-shortcut",
 )
 
-TUNED: dict[str, dict[str, float]] = {}
-"""The settings of each that did best on the scenes of the matrix ompl-tuning, if not its own."""
+TUNED: dict[str, dict[str, float]] = {
+    "ompl-rrtstar": {"range": 10.0, "k_nearest": False},
+    "ompl-prmstar": {"slice_growth": 0.3},
+    "ompl-informedrrtstar": {"range": 10.0, "k_nearest": False},
+    "ompl-sorrtstar": {"range": 10.0, "k_nearest": False},
+    "ompl-bitstar": {"samples_per_batch": 1000},
+    "ompl-aorrtc": {"range": 5.0},
+    "ompl-shortcut": {"rope": 2.0},
+}
+"""The settings of each that did best on the scenes of the matrix ompl-tuning, by its rule."""
 
 RIVALS = (*OMPL_PLANNERS, *(f"{name}-tuned" for name in TUNED))
 

@@ -3,6 +3,7 @@ import math
 
 import pytest
 
+from suite.harness.matrix import load_matrix
 from suite.plugins import load_planner
 from tests.perf.performance_table import (
     EVERYWHERE,
@@ -140,6 +141,12 @@ def test_no_ratio_stands_beside_a_planner_that_did_not_come_there():
     rows = times_table(measured).frame.to_dict("records")
     assert [(r["planner"], r["sign"]) for r in rows] == [("kbga", ">"), ("ompl-bitstar", "=")]
     assert all(r["over kbga"] is None for r in rows)
+
+
+def test_the_tuned_settings_are_those_of_the_matrix_of_all_planners():
+    variants = {v.name: v for v in load_matrix("all-planners").variants}
+    for name, settings in TUNED.items():
+        assert dict(variants[f"{name}-tuned"].settings).items() >= settings.items()
 
 
 def test_every_tuned_planner_has_settings_of_its_own():
