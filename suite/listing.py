@@ -53,7 +53,8 @@ def _listed(name: str) -> dict[str, Any]:
 
 def scene_for_people(row: dict[str, Any]) -> dict[str, Any]:
     """One of :func:`scenes_listing` in few columns: paths are too long for a line."""
-    chosen = ("name", "obstacles", "parts", "optimum", "queries", "figure")
+    # Each of them has the one query "main".
+    chosen = ("name", "obstacles", "parts", "optimum", "figure")
     kinds = [kind for kind in ("generated", "dynamic", "control") if row[kind]]
     return {name: row[name] for name in chosen} | {"kind": kinds}
 
