@@ -7,7 +7,7 @@ STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
 
-.PHONY: help setup browser bench test test-slow torture lint perf harness results clean
+.PHONY: help setup browser bench test test-slow torture lint perf harness results search-readings clean
 
 help:
 	@echo "make bench     run the matrix paper-static and print its tables (ARGS=--quick: two seeds)"
@@ -63,8 +63,8 @@ perf: setup
 
 # Everything in results/ that comes from a matrix: three quarters of an hour on two cores, nothing
 # else running.
-STUDIES := resolution obstacles kbga-rounds ablation mutation-rate penalty first-population tuning
-CAMPAIGNS := paper-static paper-dynamic all-planners $(STUDIES)
+STUDIES := resolution obstacles plus readings ablation mutation-rate penalty first-population tuning
+CAMPAIGNS := ompl-tuning paper-static paper-dynamic all-planners alignment $(STUDIES)
 PAPER := paper-static paper-dynamic resolution
 NO_ROWS := --leave-out paths --leave-out traces
 # What stands in paper-static is not drawn again, and a study has a figure of its own.
@@ -76,6 +76,7 @@ results-ablation: LEAVE := $(NO_ROWS) --leave-out comparisons
 results-resolution results-first-population: LEAVE := --leave-out paths $(NO_PICTURES)
 results-paper-dynamic: LEAVE := --leave-out paths
 results-all-planners: LEAVE := $(NO_ROWS) --leave-out paper-pictures
+results-alignment results-ompl-tuning: LEAVE := $(NO_ROWS) $(NO_PICTURES)
 
 results: $(CAMPAIGNS:%=results-%)
 	rm -f out/paper.db
@@ -88,6 +89,10 @@ $(CAMPAIGNS:%=results-%): results-%: setup
 	mkdir -p out
 	$(BIN)/kbga-bench run $* --store out/$*.db --jobs $(JOBS)
 	$(BIN)/kbga-bench results out/$*.db results/$* $(LEAVE)
+
+# The search for the reading of the paper; what it tried stays in out/, so that it can go on.
+search-readings: setup
+	$(BIN)/python -m tests.perf.readings results/readings-search --jobs $(JOBS)
 
 # What the harness itself costs. On a machine that does nothing else.
 harness: setup

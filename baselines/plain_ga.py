@@ -23,8 +23,7 @@ class PlainGASettings:
     mutation_probability : per chromosome (paper Table 1: 0.5, the best of those tried; by the same
         rule ours is 0.2, see results/mutation-rate).
     crossover_probability : per pair of parents (paper III: 0.9).
-    initial_nodes : most intermediate nodes of a chromosome in the first population (ours: twice
-        KBGA's, for nothing but crossover makes a chromosome longer here).
+    initial_nodes : most intermediate nodes of a chromosome in the first population, as for KBGA.
     penalty : the constant C of Eq. (1), as for KBGA.
     max_generations : the paper's plain GA found its best at generation 346 on average.
     stagnation : generations without a better path before it stops, once it has one (ours: far
@@ -34,7 +33,7 @@ class PlainGASettings:
     mutation_probability: float = 0.2
     crossover_probability: float = 0.9
     initial_nodes: int = 8
-    penalty: float = 100.0
+    penalty: float = 140.0
     max_generations: int = 500
     stagnation: int = 200
 

@@ -124,14 +124,12 @@ II-C     repair: a node is inserted into an            kbga.operators.repair.rep
          infeasible segment
 II-C     ... the best one, by a local search in the    kbga.operators.repair.repair
          grids neighbouring the intersected obstacle   kbga.operators.detour
-kbga     the free nodes within reach of its boundary;  KBGASettings.repair_reach
-         so many of them are tried; whether a repair   KBGASettings.repair_candidates
-         that costs more is kept; of several           KBGASettings.repair_must_help
-         obstacles hit, a random one
-plus     those next to its corners, where shortest     kbga.problem.near_count
-         paths bend; twelve of them are tried; the     KBGAPlusSettings.repair_reach
-         best is taken though it cost more than        KBGAPlusSettings.repair_candidates
-         before
+kbga     the free nodes next to its corners, or all    kbga.problem.near_count
+         within reach of its boundary; so many of      KBGASettings.repair_reach
+         them are tried; whether a repair that costs   KBGASettings.repair_candidates
+         more is kept; of several obstacles hit, a     KBGASettings.repair_must_help
+         random one
+plus     twelve of them are tried                      KBGAPlusSettings.repair_candidates
 plus     a repair makes a path longer: one that is     KBGAPlusSettings.repair_limit
          too long already is left as it is             KBGASettings.repair_limit
 II-C     deletion: for feasible and infeasible paths;  kbga.operators.deletion.delete
@@ -156,19 +154,21 @@ II-C     operators fire by probability and by          kbga.evolution.next_child
          heuristic knowledge
 II-D     the first population is random, and           kbga.evolution.first_population
          evaluated by Eq. (1) (Fig. 5)
-silent   the number of nodes is random too, up to a    KBGASettings.initial_nodes
-         most
+kbga     the number of nodes is random too, up to      KBGASettings.initial_nodes
+         eight
+plus     up to four                                    KBGAPlusSettings.initial_nodes
 II-D     its best is the best so far, which each       KBGA.lowest_cost
          generation updates                            KBGA.step
 silent   beside it the best feasible path, which       KBGA.best_path
          alone is returned: a robot can use no other   KBGA.best_cost
 II-D     parents are selected by tournament            kbga.selection.tournament
-silent   of so many                                    KBGASettings.tournament_size
+kbga     of five                                       KBGASettings.tournament_size
+plus     of two                                        KBGAPlusSettings.tournament_size
 II-D     of two parents, one or more operators make    kbga.evolution.next_children
          two children; so for the whole population
-kbga     crossover, mutation, then the specialised     kbga.evolution.next_children
-         operators: one of those that suit the child   KBGASettings.one_operator
-         or all of them, once or in rounds             KBGASettings.rounds
+kbga     crossover, mutation, then two rounds of the   kbga.evolution.next_children
+         specialised operators that suit the child     KBGASettings.one_operator
+                                                       KBGASettings.rounds
 plus     eight rounds of repair, deletion and          KBGAPlusSettings.rounds
          improvement, so that a child on a new route
          lives until it is repaired
@@ -181,6 +181,8 @@ II-D     the end: a number of generations is over, or  KBGA.run
 silent   both numbers; and the best counts as          KBGASettings.max_generations
          unchanged only once it is feasible: before,   KBGASettings.stagnation
          more generations are all that helps
+plus     half as many generations without a better     KBGAPlusSettings.stagnation
+         one
 II-D     a dynamic environment: what is sensed is      kbga.plugin.KBGAReplanner
          checked after a period                        suite.planner.Replanner.update
 II-D     if the environment changed, the population    KBGA.go_on

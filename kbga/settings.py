@@ -38,8 +38,9 @@ class KBGASettings:
     tournament_size : individuals that compete to be a parent (a reading).
     penalty : the constant C of Eq. (1), metres of path per metre of collision depth (a reading).
     repair_reach : "the neighboring grids of the intersected obstacle" (paper II-C) are the free
-        lattice nodes within so many units of its boundary (a reading); 0 takes those next to its
-        corners instead, where shortest paths bend (not in the paper).
+        lattice nodes within so many units of its boundary; 0: those next to its corners, where
+        shortest paths bend (a reading: with all of the boundary, none that was tried finds a way
+        through the maze).
     repair_candidates : how many of them are tried in one repair, spread evenly; 0: all (a reading).
     repair_must_help : whether a repair that costs more than the segment did is taken back (a
         reading: "the best node available" may be worse than none).
@@ -48,8 +49,8 @@ class KBGASettings:
     improvement_radius : longest step of the local search around a node, lattice units; 0: one step
         to the best of the eight neighbours, and no more (the plainest reading).
     rounds : how often at most a child meets the specialised operators in one generation, each time
-        by probability and heuristic; a round without effect is the last (the paper has "one or more
-        genetic operators" work on a child: 1).
+        by probability and heuristic; a round without effect is the last (a reading: the paper has
+        "one or more genetic operators" work on a child).
     one_operator : whether a round fires one of the specialised operators that suit the child, or
         all of them in turn (a reading).
     remembers : whether nodes that improvement or deletion found settled are not drawn again until
@@ -64,7 +65,7 @@ class KBGASettings:
     population_size: int = 50
     resolution: int = 100
     max_nodes: int = 48
-    initial_nodes: int = 4
+    initial_nodes: int = 8
     informed_share: float = 0.0
     crossover_probability: float = 0.9
     mutation_probability: float = 0.2
@@ -73,19 +74,19 @@ class KBGASettings:
     deletion_probability: float = 0.9
     improvement_probability: float = 0.9
     adaptation_rate: float = 0.0
-    tournament_size: int = 2
-    penalty: float = 10.0
-    repair_reach: int = 1
-    repair_candidates: int = 0
+    tournament_size: int = 5
+    penalty: float = 140.0
+    repair_reach: int = 0
+    repair_candidates: int = 16
     repair_must_help: bool = False
     repair_limit: float = float("inf")
     improvement_radius: int = 0
-    rounds: int = 1
+    rounds: int = 2
     one_operator: bool = False
     remembers: bool = False
-    generations_counted: Literal["best", "stop"] = "best"
+    generations_counted: Literal["best", "stop"] = "stop"
     max_generations: int = 500
-    stagnation: int = 15
+    stagnation: int = 30
 
     def __post_init__(self) -> None:
         for name, low in (
@@ -139,23 +140,27 @@ class KBGAPlusSettings(KBGASettings):
     Each of these differs from the paper's, and what each brings is measured (matrix `plus`); the
     others are those of :class:`KBGASettings`.
 
-    penalty : 100: KBGA-plus comes out alike from 10 to 1000.
-    repair_reach : 0: a repair tries nodes next to corners, where shortest paths bend.
-    repair_candidates : 12 of them.
+    initial_nodes : 4, as each makes a collision likely; the operators insert what is missing.
+    tournament_size : 2, the mildest choice.
+    penalty : 100; it comes out alike from 10 to 1000.
+    repair_candidates : 12 are enough.
     repair_limit : 1: a repair makes a path longer, so one that is longer already than the best
         feasible one is not worth the checks.
     improvement_radius : 8: the search goes on from each better place, its steps doubled or halved.
     rounds : 8: a child on a new route lives until it is repaired.
     remembers : no node is tried again that can't have changed.
+    stagnation : 15, for what it finds it finds soon.
     """
 
+    initial_nodes: int = 4
+    tournament_size: int = 2
     penalty: float = 100.0
-    repair_reach: int = 0
     repair_candidates: int = 12
     repair_limit: float = 1.0
     improvement_radius: int = 8
     rounds: int = 8
     remembers: bool = True
+    stagnation: int = 15
 
 
 def _is_number(value: Any) -> bool:

@@ -11,13 +11,16 @@ The rule, written down before the first search:
    drawing of them, decide. Costs count as the excess of the mean over the best run, for our scenes
    are drawn to the paper's best cost.
 3. A statement is missed by 0 to 1: a number by the logarithm of ours over the paper's, a factor of
-   two or more being 1; a success rate by its difference. The distance of a reading is the sum, and
-   each statement counts the same.
+   two or more being 1; a success rate by its difference. The distance of a reading is the sum. Each
+   statement counts the same, but that all runs of the whole algorithm find a path counts
+   three times: without it, there is no algorithm to speak of.
 4. Choice by choice, in the order below, the value of the least distance is taken; of equal ones,
    the earlier. So again until a whole round changes nothing, or ROUNDS are done; and once more from
-   ANOTHER_START. The nearest of all that were tried is the paper's algorithm here.
-   Changed once: a first search without the corners, over 62 readings, found none that has a path in
-   the maze; so the corners were let in, and a larger C.
+   each of OTHER_STARTS. The nearest of all that were tried is the paper's algorithm here.
+   Changed twice, and open to see: a first search without the corners, over 62 readings, found none
+   that has a path in the maze; so the corners were let in, and a larger C. A second one, over 61,
+   went away from the few that had, as the maze was one statement among 23; so success counts three
+   times, and the third start was added, which has the corners.
 5. Then the chosen one and the plainest run again, with twenty other seeds: the figures of these are
    what is reported, for the best of many is flattered by the seeds that it was chosen with.
 """
@@ -57,15 +60,26 @@ CHOICES: Mapping[str, tuple[Any, ...]] = {
 corners: the last of three, for the paper has those next to the obstacle. Memory is no choice: the
 paper draws nodes at random."""
 
-ANOTHER_START: Mapping[str, Any] = {
-    "repair_reach": 2,
-    "repair_must_help": True,
-    "one_operator": True,
-    "tournament_size": 3,
-    "initial_nodes": 16,
-}
-"""What was nearest to single statements when they were looked at one by one: a maze that needs
-crossover, and the generations of the zigzag. The rest as in the plainest."""
+OTHER_STARTS: tuple[Mapping[str, Any], ...] = (
+    {
+        "repair_reach": 2,
+        "repair_must_help": True,
+        "one_operator": True,
+        "tournament_size": 3,
+        "initial_nodes": 16,
+    },
+    {
+        "repair_reach": 0,
+        "repair_candidates": 16,
+        "one_operator": True,
+        "improvement_radius": 8,
+        "tournament_size": 3,
+        "initial_nodes": 16,
+        "penalty": 140.0,
+    },
+)
+"""What was nearest to single statements when they were looked at one by one: the generations of the
+zigzag, and a maze that needs crossover. The rest as in the plainest."""
 
 ROUNDS = 2
 FIRST_SEED, LAST_LOOK_SEED, LAST_LOOK_SEEDS = 1000, 2000, 20
@@ -108,6 +122,7 @@ class Statement:
     paper : its figure.
     ours : from the runs of the group and the reading to ours.
     is_share : a rate between 0 and 1 is missed by a difference, any other number by a ratio.
+    weight : how often it counts.
     """
 
     name: str
@@ -115,6 +130,7 @@ class Statement:
     paper: float
     ours: Callable[[Sequence[dict[str, float]], Mapping[str, Any]], float]
     is_share: bool = False
+    weight: float = 1.0
 
 
 def feasible(runs: Sequence[dict[str, float]], _: Mapping[str, Any]) -> float:
@@ -159,7 +175,7 @@ def above(typical: float, best: float) -> float:
 
 STATEMENTS = (
     *(
-        Statement(f"{scene}: all runs find a path", (scene, "whole"), 1.0, feasible, True)
+        Statement(f"{scene}: all runs find a path", (scene, "whole"), 1.0, feasible, True, 3.0)
         for scene in ("unstructured", "maze", "zigzag", "double_u")
     ),
     Statement("unstructured: generations", ("unstructured", "whole"), 51, generations),
@@ -256,7 +272,7 @@ class Search:
         key = json.dumps(reading)
         if key not in self.rows:
             ours = self.figures(reading)
-            gaps = [missed(s, ours[s.name]) for s in STATEMENTS]
+            gaps = [s.weight * missed(s, ours[s.name]) for s in STATEMENTS]
             out = sum(comes_out(s, ours[s.name]) for s in STATEMENTS)
             self.rows[key] = {**reading, "distance": sum(gaps), "come out": out, **ours}
             sys.stderr.write(f"{sum(gaps):6.3f} {out:2d}  {reading}\n")
@@ -333,7 +349,8 @@ def page(search: Search, statements: pd.DataFrame) -> str:
     }
     tried_note = (
         f"{len(tried)} readings were tried with {len(search.seeds)} seeds each. The plainest is "
-        f"{plain:.2f} away from the paper, the chosen one {here:.2f}, of {len(STATEMENTS)}."
+        f"{plain:.2f} away from the paper, the chosen one {here:.2f}, of "
+        f"{sum(s.weight for s in STATEMENTS):g}."
     )
     note = (
         f"With {LAST_LOOK_SEEDS} fresh seeds {out['chosen']} of {len(STATEMENTS)} statements come "
@@ -365,7 +382,7 @@ def main() -> None:
     given.kept.parent.mkdir(parents=True, exist_ok=True)
     with ProcessPoolExecutor(given.jobs) as pool:
         search = Search(range(FIRST_SEED, FIRST_SEED + given.seeds), pool, given.kept)
-        for start in (PLAINEST, {**PLAINEST, **ANOTHER_START}):
+        for start in (PLAINEST, *({**PLAINEST, **other} for other in OTHER_STARTS)):
             search.descend(dict(start))
             search.table().to_csv(given.folder / "search.csv", index=False, float_format="%.6g")
         both = {"plainest": PLAINEST, "chosen": search.nearest()}

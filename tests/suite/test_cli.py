@@ -73,7 +73,7 @@ def test_lists_are_json_for_programs(kbga_bench):
     assert [scene["name"] for scene in scenes if scene["control"]] == aligned_names()
     matrices = json.loads(kbga_bench("list", "matrices", "--format", "json").out)
     paper = next(matrix for matrix in matrices if matrix["name"] == "paper-static")
-    assert paper["runs"] == 8 * 6 * 20
+    assert paper["runs"] == 8 * 9 * 20
 
 
 def test_a_plugin_that_cannot_be_imported_is_listed_with_the_reason(kbga_bench, hostile):

@@ -106,7 +106,11 @@ def test_unknown_obstacles_are_reacted_to_as_the_paper_says(seed):
     ],
 )
 def test_paths_are_as_good_as_what_is_known_and_the_lattice_allow(scene, most):
-    gaps = [r.cost / r.optimum - 1.0 for seed in range(SAMPLE) for r in run(scene, seed).replans]
+    gaps = [
+        r.cost / r.optimum - 1.0
+        for seed in range(SAMPLE)
+        for r in run(scene, seed, "kbga-plus").replans
+    ]
     assert max(gaps) < most
 
 

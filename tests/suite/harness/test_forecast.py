@@ -62,7 +62,7 @@ def test_planners_are_in_the_order_of_the_matrix():
 
 
 def test_a_matrix_is_forecast_without_a_store_and_nothing_is_written(tmp_path):
-    matrix, file = load_matrix("kbga-rounds"), tmp_path / "none.db"
+    matrix, file = load_matrix("plus"), tmp_path / "none.db"
     told = forecast_matrix(matrix, file, jobs=None, quick=True, which=Which.MISSING)
     assert told.runs == told.wanted == len(matrix.cells(quick=True))
     assert list(tmp_path.iterdir()) == []

@@ -66,7 +66,7 @@ def test_a_row_that_comes_out_otherwise_says_how_far(store):
     found = compare(file, record)
     assert (found.same, found.must_be_same) == (False, True)
     assert found.distance == pytest.approx(0.5 * 2**0.5)
-    assert "150.000000 m before, 155.7" in found.words
+    assert f"150.000000 m before, {record.cost:.6f} m now" in found.words
     assert "it should be the same" in found.words
 
 
