@@ -1,8 +1,8 @@
 """Which reading of the paper, where it is silent, brings its statements nearest.
 
-python -m tests.perf.readings results/readings [--seeds 10] [--jobs 2]
+python -m tests.perf.readings results/readings-search [--seeds 5] [--jobs 2]
 
-The rule, written down before the first search:
+The rule, written down before the first search (what was changed then is said in 4):
 
 1. What the paper says stays as it says it. What it leaves open are the CHOICES below. The search
    begins at the plainest reading, which takes the first of each.
@@ -342,7 +342,7 @@ def page(search: Search, statements: pd.DataFrame) -> str:
     )
     tried = search.table()
     here, plain = tried["distance"].iloc[0], search.rows[json.dumps(PLAINEST)]["distance"]
-    rule = (__doc__ or "").split("search:\n\n", 1)[1].strip()
+    rule = (__doc__ or "").split(" in 4):\n\n", 1)[1].strip()
     out = {
         name: int((statements[f"{name}: comes out"] == "yes").sum())
         for name in ("plainest", "chosen")
@@ -360,7 +360,7 @@ def page(search: Search, statements: pd.DataFrame) -> str:
     )
     parts = [
         "# Readings of the paper",
-        "The rule of `tests/perf/readings.py`, as it stood before the search:",
+        "The rule of `tests/perf/readings.py`, and what was changed of it on the way:",
         rule,
         tried_note,
         choices.to_markdown(index=False, disable_numparse=True),
