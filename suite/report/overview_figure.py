@@ -15,7 +15,7 @@ from suite.report.clock import joined, untimed_note
 from suite.report.panels import LEAST_GAP, SMALL, legend, plain_number
 from suite.report.ranking import rankings, scene_scores
 
-PLANNERS_AT_MOST = 30
+PLANNERS_AT_MOST = 40
 SCENES_AT_MOST = 16
 """More can't be read."""
 

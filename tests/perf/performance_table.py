@@ -208,10 +208,10 @@ def _growth(measured: Measured) -> Iterator[Row]:
     yield Row("growth of a collision check", scene, "times", "<=", CHECK_GROWTH, ratio, remark)
     measure = "whole run among scattered"
     scenes = [f"scattered_{n}" for n in (20, 3000)]
-    few, many = (measured.median_s(measure, planner="kbga", scene=s) for s in scenes)
+    few, many = (measured.median_s(measure, planner="kbga-plus", scene=s) for s in scenes)
     ratio = many / few if few and many else None
     remark = f"{_ms(few)} and {_ms(many)} ms" if few and many else ""
-    infos = [measured.info(measure, planner="kbga", scene=s) for s in scenes]
+    infos = [measured.info(measure, planner="kbga-plus", scene=s) for s in scenes]
     for count in ("generations", "checks"):
         counts = [info.get(count) for info in infos]
         if None not in counts:

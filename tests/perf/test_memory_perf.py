@@ -24,7 +24,7 @@ def allocations():
 @pytest.mark.parametrize("scene_name", SCENES)
 def test_memory_of_a_whole_run(benchmark, scene_name):
     benchmark.group = "whole run, allocations traced"
-    runner = planner("kbga")
+    runner = planner("kbga-plus")
     plan(runner, scene_name, 0)
     gc.collect()
     tracemalloc.start()
@@ -38,7 +38,7 @@ def test_memory_of_a_whole_run(benchmark, scene_name):
 def test_allocations_of_a_generation(benchmark, allocations, scene_name):
     """A longer run allocates as much as a shorter one, if the loop allocates nothing."""
     benchmark.group = "120 generations, allocations counted"
-    runner = planner("kbga", stagnation=1000, max_generations=1000)
+    runner = planner("kbga-plus", stagnation=1000, max_generations=1000)
     made = []
 
     def count_allocations(generations: int) -> None:

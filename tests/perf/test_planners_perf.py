@@ -26,7 +26,7 @@ def test_whole_run_among_scattered_obstacles(benchmark, scene_name):
         scene(scene_name)
     except SceneError as error:
         pytest.skip(f"the catalogue has no such scene yet: {error}")
-    _measure_whole_runs(benchmark, "whole run among scattered", "kbga", scene_name)
+    _measure_whole_runs(benchmark, "whole run among scattered", "kbga-plus", scene_name)
 
 
 def _measure_whole_runs(benchmark, measure, planner_name, scene_name):

@@ -11,7 +11,7 @@ from tests.perf.series import SCENES, SEEDS, optimum, plan, planner, scene
 @pytest.mark.parametrize("resolution", [100, 400])
 def test_gap(benchmark, resolution, scene_name):
     benchmark.group = f"whole runs at resolution {resolution}: all seeds"
-    runner = planner("kbga", resolution=resolution)
+    runner = planner("kbga-plus", resolution=resolution)
     plans = []
     benchmark.pedantic(
         lambda: plans.extend(plan(runner, scene_name, seed) for seed in range(SEEDS)), rounds=1
