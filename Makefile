@@ -83,7 +83,7 @@ results: $(CAMPAIGNS:%=results-%)
 	$(BIN)/kbga-bench merge out/paper.db $(PAPER:%=out/%.db)
 	$(BIN)/kbga-bench tables out/paper.db --format markdown --output results/paper
 	$(BIN)/kbga-bench tables out/paper.db --format csv --output results/paper
-	$(BIN)/kbga-bench report out/paper-static.db -o results/paper/report.html
+	$(BIN)/kbga-bench report out/paper-static.db -o out/report.html
 
 $(CAMPAIGNS:%=results-%): results-%: setup
 	mkdir -p out
