@@ -160,8 +160,9 @@ def test_runs_that_failed_come_before_those_that_only_found_nothing(tmp_path):
     assert rows == [["crashed", "1"], ["exhausted", "3"]]
 
 
-def test_no_two_tables_have_the_same_heading(store):
-    page = store.with_suffix(".html").read_text(encoding="utf-8")
+def test_no_two_tables_have_the_same_heading(store, tmp_path):
+    write_report(store, tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
     headings = re.findall(r"<h3>(.*?)</h3>", page)
     assert len(headings) > 10
     assert len(set(headings)) == len(headings)
