@@ -72,11 +72,11 @@ NO_PICTURES := --leave-out comparisons --leave-out paper-pictures
 $(STUDIES:%=results-%): LEAVE := $(NO_ROWS) $(NO_PICTURES)
 # The paper's Figure 13 is of the ablation.
 results-ablation: LEAVE := $(NO_ROWS) --leave-out comparisons
-# Figures of the paper and of the study come out of these traces.
-results-resolution results-first-population: LEAVE := --leave-out paths $(NO_PICTURES)
+# Figures of the paper come out of these traces.
+results-resolution: LEAVE := --leave-out paths $(NO_PICTURES)
 results-paper-dynamic: LEAVE := --leave-out paths
 results-all-planners: LEAVE := $(NO_ROWS) --leave-out paper-pictures
-results-alignment results-ompl-tuning: LEAVE := $(NO_ROWS) $(NO_PICTURES)
+results-alignment results-ompl-tuning results-plus: LEAVE := $(NO_ROWS) --leave-out events $(NO_PICTURES)
 
 results: $(CAMPAIGNS:%=results-%)
 	rm -f out/paper.db

@@ -35,6 +35,9 @@ def first_measures(folders: Sequence[Path]) -> pd.DataFrame | None:
     return None if traces is None else traces.groupby("key").first()
 
 
+FROM_EVENTS = ("fixed-", "ranking", "statistics")
+
+
 def check_tables(folder: Path, *sources: Path) -> None:
     """Make all tables of a folder again from rows, and compare them letter by letter."""
     tables = all_tables(
@@ -49,6 +52,9 @@ def check_tables(folder: Path, *sources: Path) -> None:
     if not all((source / "rows" / "traces.parquet").exists() for source in sources):
         # Its best costs of first populations come out of the traces.
         there.pop("paper-figures.csv", None)
+    if not all((source / "rows" / "events.parquet").exists() for source in sources):
+        # They are made from the events, which are megabytes that two studies leave out.
+        there = {n: t for n, t in there.items() if not n.startswith(FROM_EVENTS)}
     assert there
     assert [name for name, text in there.items() if made.get(name) != text] == []
 
