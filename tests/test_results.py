@@ -53,7 +53,7 @@ def check_tables(folder: Path, *sources: Path) -> None:
         # Its best costs of first populations come out of the traces.
         there.pop("paper-figures.csv", None)
     if not all((source / "rows" / "events.parquet").exists() for source in sources):
-        # They are made from the events, which are megabytes that two studies leave out.
+        # They are made from the events, which are megabytes that some studies leave out.
         there = {n: t for n, t in there.items() if not n.startswith(FROM_EVENTS)}
     assert there
     assert [name for name, text in there.items() if made.get(name) != text] == []
