@@ -126,6 +126,8 @@ def plot_profile(scores: pd.DataFrame) -> Figure:
     end = max(1.5 * finite.max(), 10.0)
     figure, axes = plt.subplots(figsize=(7.6, 5.0), layout="constrained")
     for planner, i in planners.items():
+        if planner not in ratios.index:  # no run of it had a core for itself
+            continue
         mine = np.sort(ratios.loc[planner].dropna().to_numpy())
         mine = mine[np.isfinite(mine)]
         share = np.arange(len(mine) + 1) / ratios.shape[1]

@@ -12,7 +12,7 @@ from suite.report.clock import by_the_clock, fair, outcome_stands
 from suite.report.comparison_figures import comparison_figures
 from suite.report.convergence_figures import counted_groups
 from suite.report.ranking import scene_scores
-from suite.report.runtime_figures import runtime_figures
+from suite.report.runtime_figures import plot_profile, runtime_figures
 from suite.report.tables import all_tables
 from suite.report.targets import fixed_target, target_tables
 from suite.report.versions import compare_versions
@@ -180,3 +180,9 @@ def test_worse_paths_of_runs_that_load_cut_short_are_no_regression():
     assert compare_versions(runs_of(*timed(110.0)), busy, rng).worse == 0
     idle = runs_of(*timed(150.0))
     assert compare_versions(runs_of(*timed(110.0)), idle, rng).worse == 1
+
+
+def test_a_planner_none_of_whose_runs_had_a_core_is_not_in_the_profile_and_breaks_nothing():
+    rows = [measured(name, 0, LATE, contended=name == "b", wall_s=0.9) for name in "abc"]
+    scores = scene_scores(steps(*rows))
+    plt.close(plot_profile(scores))
