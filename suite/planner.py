@@ -21,7 +21,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from enum import StrEnum
+from enum import StrEnum, nonmember
 from typing import Any, ClassVar
 
 import numpy as np
@@ -55,6 +55,13 @@ class PlanStatus(StrEnum):
     """The harness ended the run at its hard limit."""
     OUT_OF_MEMORY = "out_of_memory"
     """The run needed more memory than it was given."""
+
+    CLAIMABLE = nonmember((SOLVED, INFEASIBLE, EXHAUSTED))
+    """What a planner may say of its own run."""
+    SUCCESSES = nonmember((SOLVED, INFEASIBLE))
+    """A path that the referee accepts, or the right answer that there is none."""
+    FAILURES = nonmember((INVALID, ERROR, CRASHED, TIMED_OUT, OUT_OF_MEMORY))
+    """Ends that ask for somebody to look; ``run --only-failed`` does them again."""
 
 
 @dataclass(frozen=True, slots=True)

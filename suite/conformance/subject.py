@@ -23,7 +23,6 @@ from suite.referee import Referee, Verdict
 from suite.reported import as_checks, as_count
 from suite.scene import Query, Scene
 
-CLAIMABLE = (PlanStatus.SOLVED, PlanStatus.INFEASIBLE, PlanStatus.EXHAUSTED)
 SEED = 1
 
 GENERATIONS = 10
@@ -296,7 +295,7 @@ def form_of(returned: Any) -> str | None:
     """What is wrong with the form of what ``plan`` returned; None if nothing is."""
     if not isinstance(returned, Plan):
         return f"plan returned {type(returned).__name__}"
-    if returned.status not in CLAIMABLE:
+    if returned.status not in PlanStatus.CLAIMABLE:
         return f"the status of the plan is {returned.status!r}"
     try:
         for name in ("generations", "generation_of_best"):

@@ -29,8 +29,6 @@ from suite.scene import Query, scene_fingerprint
 TRACEBACK_LINES = 12
 """Enough for the exception and the frames of the planner that raised it."""
 
-CLAIMABLE = (PlanStatus.SOLVED, PlanStatus.INFEASIBLE, PlanStatus.EXHAUSTED)
-
 
 def run_cell(
     cell: Cell,
@@ -126,8 +124,8 @@ def _run(
 def _checked(plan: Any) -> Plan:
     if not isinstance(plan, Plan):
         raise ContractError(f"plan returned {type(plan).__name__}. It must return a Plan.")
-    if plan.status not in CLAIMABLE:
-        allowed = ", ".join(CLAIMABLE)
+    if plan.status not in PlanStatus.CLAIMABLE:
+        allowed = ", ".join(PlanStatus.CLAIMABLE)
         raise ContractError(f"plan returned the status {plan.status!r}. It may claim {allowed}.")
     return plan
 

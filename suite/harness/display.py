@@ -17,7 +17,8 @@ from rich.progress import Progress as Bars
 
 from suite.harness.forecast import duration
 from suite.harness.pace import Pace
-from suite.harness.run import FAILURES, Progress, Tally
+from suite.harness.run import Progress, Tally
+from suite.planner import PlanStatus
 
 LINE_EVERY_S = 10.0
 """Plain lines go to logs: often enough to see life, seldom enough to read."""
@@ -91,7 +92,7 @@ class Display:
     def _show_failure(self, progress: Progress) -> None:
         """Name the first failure of each kind; the count, and the store, have them all."""
         record = progress.last
-        if record is None or record.status not in FAILURES:
+        if record is None or record.status not in PlanStatus.FAILURES:
             return
         reason = (record.reason or "").strip().splitlines()
         what = f"{record.status}: {reason[-1] if reason else ''}"

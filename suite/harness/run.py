@@ -26,20 +26,6 @@ from suite.store import Store
 ORDER_SEED = 2003
 """Of the order in which runs are started; any number will do, as long as it stays."""
 
-FAILURES = frozenset(
-    {
-        PlanStatus.INVALID,
-        PlanStatus.ERROR,
-        PlanStatus.CRASHED,
-        PlanStatus.TIMED_OUT,
-        PlanStatus.OUT_OF_MEMORY,
-    }
-)
-"""Ends that ask for somebody to look; an exhausted budget or a refusal does not."""
-
-SUCCESSES = frozenset({PlanStatus.SOLVED, PlanStatus.INFEASIBLE})
-"""A path that the referee accepts, or the right answer that there is none."""
-
 
 class Which(StrEnum):
     """Which runs of a matrix are to be run."""
@@ -47,7 +33,7 @@ class Which(StrEnum):
     MISSING = "missing"
     """Those that the store lacks."""
     FAILED = "failed"
-    """Those too that ended in one of FAILURES; their rows are replaced."""
+    """Those too that ended in one of PlanStatus.FAILURES; their rows are replaced."""
     ALL = "all"
     """All; rows that are there are replaced, each when its new run has ended."""
 
@@ -58,7 +44,7 @@ class Tally:
 
     wanted, done : runs.
     succeeded : of these solved, or proved to be infeasible.
-    failed : of these ended in one of FAILURES.
+    failed : of these ended in one of PlanStatus.FAILURES.
     """
 
     wanted: int = 0
@@ -69,8 +55,8 @@ class Tally:
     def count(self, status: str) -> None:
         """Count one row."""
         self.done += 1
-        self.succeeded += status in SUCCESSES
-        self.failed += status in FAILURES
+        self.succeeded += status in PlanStatus.SUCCESSES
+        self.failed += status in PlanStatus.FAILURES
 
 
 @dataclass(slots=True)
@@ -80,7 +66,7 @@ class Progress:
     wanted : runs of the matrix.
     done : of these in the store, those of earlier sessions included.
     found : of these done in earlier sessions.
-    failed : runs of this session that ended in one of FAILURES.
+    failed : runs of this session that ended in one of PlanStatus.FAILURES.
     running : labels of the runs that were handed out and are not back.
     last : the row that came last.
     left : runs that still go on elsewhere after an interruption; their rows are dropped.
@@ -244,7 +230,7 @@ def to_run(cells: Sequence[Cell], there: Mapping[str, str], which: Which) -> lis
     """
     again = {
         Which.MISSING: set[str](),
-        Which.FAILED: {key for key, status in there.items() if status in FAILURES},
+        Which.FAILED: {key for key, status in there.items() if status in PlanStatus.FAILURES},
         Which.ALL: set(there),
     }[which]
     return interleaved([cell for cell in cells if cell.key not in there or cell.key in again])
@@ -292,7 +278,7 @@ def _left_in_words(left: int) -> str:
 
 def _count(record: RunRecord, progress: Progress) -> None:
     progress.done += 1
-    progress.failed += record.status in FAILURES
+    progress.failed += record.status in PlanStatus.FAILURES
     progress.last = record
     progress.planners[record.cell.variant].count(record.status)
 

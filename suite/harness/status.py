@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 
 from suite.harness.row_names import DIGITS
-from suite.harness.run import FAILURES, SUCCESSES
+from suite.planner import PlanStatus
 from suite.store import (
     is_being_written,
     read_conflicts,
@@ -30,9 +30,9 @@ def status(store: Path) -> dict[str, Any]:
         ``wanted``, ``done`` and ``missing`` count the runs of the matrices as they were run last;
         ``other`` rows are of scenes and settings that no matrix wants any more. ``by_status`` and
         ``planners``, in the order of the matrix, count wanted runs. ``failures`` are the wanted
-        rows that ended in one of FAILURES (all of them, if no matrix wants any): key, name, status
-        and reason. ``contended`` counts the rows, of these, whose runs had no core for themselves.
-        ``writer`` says who has it open for writing, or is null.
+        rows that ended in one of PlanStatus.FAILURES (all of them, if no matrix wants any): key,
+        name, status and reason. ``contended`` counts the rows, of these, whose runs had no core for
+        themselves. ``writer`` says who has it open for writing, or is null.
 
     Raises
     ------
@@ -56,8 +56,8 @@ def status(store: Path) -> dict[str, Any]:
             str(variant): {
                 "wanted": len(group),
                 "done": int(group["status"].notna().sum()),
-                "succeeded": int(group["status"].isin(SUCCESSES).sum()),
-                "failed": int(group["status"].isin(FAILURES).sum()),
+                "succeeded": int(group["status"].isin(PlanStatus.SUCCESSES).sum()),
+                "failed": int(group["status"].isin(PlanStatus.FAILURES).sum()),
             }
             for variant, group in wanted.groupby("variant", sort=False)
         },
@@ -108,7 +108,7 @@ def as_text(found: dict[str, Any]) -> str:
 
 def _failures(runs: pd.DataFrame, wanted: pd.DataFrame) -> list[dict[str, Any]]:
     ours = _of_matrices(runs, wanted)
-    failed = ours[ours["status"].isin(FAILURES)]
+    failed = ours[ours["status"].isin(PlanStatus.FAILURES)]
     return [
         {
             "key": row["key"],

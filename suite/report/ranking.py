@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
+from suite.planner import PlanStatus
 from suite.report.anytime import Array, Steps, final_gaps, first_within
 from suite.report.clock import by_the_clock
 from suite.report.statistics import (
@@ -24,7 +25,6 @@ from suite.report.statistics import (
     nemenyi,
     signed_rank,
 )
-from suite.report.summary import SUCCESSES
 from suite.report.table import Table
 from suite.report.targets import medians
 
@@ -120,7 +120,7 @@ def scene_scores(steps: Steps) -> pd.DataFrame:
         {
             "place": runs["place"],
             "variant": runs["variant"],
-            "success (%)": 100.0 * runs["status"].isin(SUCCESSES),
+            "success (%)": 100.0 * runs["status"].isin(PlanStatus.SUCCESSES),
             "gap median (%)": 100.0 * np.where(np.isfinite(gap), gap, np.nan),
             "within 1 % (%)": 100.0 * np.where(np.isnan(time), np.nan, np.isfinite(time)),
         }

@@ -13,18 +13,6 @@ from suite.planner import PlanStatus
 from suite.report.clock import joined, untimed_note
 from suite.report.table import Table
 
-SUCCESSES = (str(PlanStatus.SOLVED), str(PlanStatus.INFEASIBLE))
-"""A proof that there is no path, which the harness has checked, is the right answer."""
-
-FAILURES = (
-    str(PlanStatus.INVALID),
-    str(PlanStatus.ERROR),
-    str(PlanStatus.CRASHED),
-    str(PlanStatus.TIMED_OUT),
-    str(PlanStatus.OUT_OF_MEMORY),
-)
-"""What ``run --only-failed`` does again."""
-
 NARROW = [
     "scene",
     "planner",
@@ -42,7 +30,7 @@ WORDS = (
     "solved: with a path that the referee accepts, or with the proof that there is none. without "
     "path: all others; most end properly, at the budget or at the planner's own stop criterion "
     "(exhausted), or with the planner's refusal of the scene (refused). failed: of these, the runs "
-    f"that broke ({', '.join(FAILURES)}); `run --only-failed` does them again."
+    f"that broke ({', '.join(PlanStatus.FAILURES)}); `run --only-failed` does them again."
 )
 
 NOTE = (
@@ -104,7 +92,9 @@ def summary_tables(runs: pd.DataFrame, left_out: int = 0) -> list[Table]:
 
 def _counted(runs: pd.DataFrame) -> str:
     """How the runs ended, in the words of the tables."""
-    solved, failed = (int(runs["status"].isin(kind).sum()) for kind in (SUCCESSES, FAILURES))
+    solved, failed = (
+        int(runs["status"].isin(kind).sum()) for kind in (PlanStatus.SUCCESSES, PlanStatus.FAILURES)
+    )
     return (
         f"{len(runs)} runs: {solved} solved, {len(runs) - solved} without path, of these {failed} "
         "failed."
@@ -134,13 +124,15 @@ def _names(runs: pd.DataFrame, name: Any) -> dict[str, str]:
 
 def _measures(group: pd.DataFrame) -> dict[str, Any]:
     solved = feasible(group)
-    successes = int(group["status"].isin(SUCCESSES).sum())
-    others = group.loc[~group["status"].isin(SUCCESSES), "status"].value_counts().sort_index()
+    successes = int(group["status"].isin(PlanStatus.SUCCESSES).sum())
+    others = (
+        group.loc[~group["status"].isin(PlanStatus.SUCCESSES), "status"].value_counts().sort_index()
+    )
     return {
         "runs": len(group),
         "solved": successes,
         "without path": len(group) - successes,
-        "failed": int(group["status"].isin(FAILURES).sum()),
+        "failed": int(group["status"].isin(PlanStatus.FAILURES).sum()),
         "success (%)": 100.0 * successes / len(group),
         "cost best": float(solved["cost"].min()),
         **spread(solved["cost"], "cost"),

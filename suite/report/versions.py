@@ -13,11 +13,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from suite.planner import PlanStatus
 from suite.report.clock import by_the_clock, dropped_note, fair, joined, untimed_note
 from suite.report.few_runs import too_few
 from suite.report.newest import newest
 from suite.report.statistics import LEVEL, REPETITIONS, holm, mann_whitney
-from suite.report.summary import SUCCESSES
 from suite.report.table import Table
 
 PLACE = ["scene", "query", "world", "variant"]
@@ -189,8 +189,8 @@ def _scores(runs: pd.DataFrame, measure: Measure) -> NDArray[np.float64]:
     values = measure.factor * runs[measure.column].astype("float64")
     if measure.column == "cost":
         # The right answer that there is no path has no cost, and there is none better.
-        values = values.mask(runs["status"].isin(SUCCESSES) & values.isna(), 0.0)
-    good = runs["status"].isin(SUCCESSES)
+        values = values.mask(runs["status"].isin(PlanStatus.SUCCESSES) & values.isna(), 0.0)
+    good = runs["status"].isin(PlanStatus.SUCCESSES)
     if not measure.is_time or measure.column == "time_to_best_s":
         values = values.mask(~good, np.inf)
     return np.asarray(values.dropna(), dtype=np.float64)

@@ -13,7 +13,6 @@ import shapely
 
 from suite.cli import main
 from suite.dynamics import Dynamics, constant_speed
-from suite.harness.run import FAILURES
 from suite.planner import PlanStatus
 from suite.scene import Obstacle, make_scene
 from suite.scene_file import read_scene, write_scene
@@ -512,7 +511,7 @@ def test_the_help_of_run_says_what_failed_means(kbga_bench, monkeypatch):
     failed, others = line.split("Not those")
     for status in PlanStatus:
         if status is not PlanStatus.SOLVED:
-            assert str(status) in (failed if status in FAILURES else others), status
+            assert str(status) in (failed if status in PlanStatus.FAILURES else others), status
 
 
 def test_stores_are_merged_and_conflicts_are_named(kbga_bench, matrix_file, tmp_path):

@@ -6,7 +6,6 @@ import pandas as pd
 
 from suite.planner import PlanStatus
 from suite.report.compared import places
-from suite.report.summary import FAILURES, SUCCESSES
 from suite.report.table import Table
 
 REASONS_AT_MOST = 30
@@ -43,7 +42,9 @@ def failures_table(runs: pd.DataFrame) -> Table:
     ]
     frame = pd.DataFrame(rows, columns=["planner", "status", "runs", "scenes", "reason", "example"])
     frame = frame.sort_values("runs", ascending=False, kind="stable")
-    frame = frame.sort_values("status", key=lambda status: ~status.isin(FAILURES), kind="stable")
+    frame = frame.sort_values(
+        "status", key=lambda status: ~status.isin(PlanStatus.FAILURES), kind="stable"
+    )
     return Table("failures", "Runs without path, by reason", frame, NOTE)
 
 
@@ -66,7 +67,7 @@ def full_reasons(runs: pd.DataFrame) -> list[tuple[str, str]]:
 
 
 def _groups(runs: pd.DataFrame) -> Any:
-    lost = runs.assign(place=places(runs))[~runs["status"].isin(SUCCESSES)]
+    lost = runs.assign(place=places(runs))[~runs["status"].isin(PlanStatus.SUCCESSES)]
     last = lost["reason"].fillna("").astype(str).str.strip().str.rsplit("\n", n=1).str[-1]
     missing = (
         lost["status"]
