@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from baselines.ends import ends_are_free
 from baselines.limits import time_is_over
 from baselines.visibility_graph import tiny_scene
-from suite.compiled import kernel
 from suite.errors import PluginError
 from suite.geometry.kernels import (
     FIRST,
@@ -28,8 +27,9 @@ from suite.geometry.kernels import (
     first_collision,
 )
 from suite.geometry.tolerances import GRID
+from suite.jit import kernel
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
-from suite.scene import Query, Scene
+from suite.scenes.scene import Query, Scene
 
 try:
     from cmaes import CMA

@@ -3,7 +3,7 @@
 import numpy as np
 
 from suite.geometry.kernels import first_collision
-from suite.scene import Query, Scene
+from suite.scenes.scene import Query, Scene
 
 
 def ends_are_free(scene: Scene, query: Query) -> bool:
@@ -14,7 +14,7 @@ def ends_are_free(scene: Scene, query: Query) -> bool:
     Examples
     --------
     >>> import shapely
-    >>> from suite.scene import make_scene
+    >>> from suite.scenes.scene import make_scene
     >>> room, box = shapely.box(0, 0, 9, 9), shapely.box(4, 4, 6, 6)
     >>> scene = make_scene("box", room, [box], ((1, 1), (6, 6)))
     >>> inside = Query("inside", scene.query().start, np.array([5.0, 5.0]))

@@ -19,11 +19,11 @@ from baselines.ends import ends_are_free
 from baselines.limits import time_is_over
 from baselines.visibility_graph import tiny_scene
 from suite.errors import PluginError
-from suite.exact import path_length
 from suite.geometry.kernels import first_collision
 from suite.geometry.tolerances import GRID
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
-from suite.scene import Query, Scene
+from suite.scenes.exact import path_length
+from suite.scenes.scene import Query, Scene
 
 try:
     from extremitypathfinder import PolygonEnvironment

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from baselines.ends import ends_are_free
 from baselines.limits import time_is_over
 from baselines.visibility_graph import tiny_scene
-from suite.compiled import kernel
 from suite.errors import PluginError
-from suite.exact import path_length
 from suite.geometry.kernels import ObstacleArrays, first_collision, pinch_at, segment_enters
+from suite.jit import kernel
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
-from suite.scene import Query, Scene
+from suite.scenes.exact import path_length
+from suite.scenes.scene import Query, Scene
 
 try:
     from tcod.path import CustomGraph, Pathfinder

@@ -13,7 +13,7 @@ import numpy as np
 from kbga.plugin import KBGAPlanner
 from kbga.settings import KBGASettings
 from suite.planner import Abilities, Budget, Plan, Planner, Recorder
-from suite.scene import Query, Scene
+from suite.scenes.scene import Query, Scene
 
 
 @dataclass(frozen=True, slots=True)

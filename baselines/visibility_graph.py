@@ -6,13 +6,13 @@ from typing import ClassVar
 import numpy as np
 import shapely
 
-from suite.exact import shortest_path
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
-from suite.scene import Query, Scene, make_scene
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import Query, Scene, make_scene
 
 
 class VisibilityGraphPlanner(Planner):
-    """Lazy A* over the tangent visibility graph; see :mod:`suite.exact`.
+    """Lazy A* over the tangent visibility graph; see :mod:`suite.scenes.exact`.
 
     It needs no budget: it ends with the shortest path, or with the proof that there is none.
     """

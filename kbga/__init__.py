@@ -20,9 +20,9 @@ search in results/readings. "plus": what only kbga-plus does, our own.
 =======  ============================================  ============================================
 paper    what it says                                  what carries it out
 =======  ============================================  ============================================
-II-A     the world is a continuous plane; an obstacle  suite.scene.make_scene
+II-A     the world is a continuous plane; an obstacle  suite.scenes.scene.make_scene
          is given by its vertices
-II-A     obstacles hold the safety distance and the    suite.scene.make_scene
+II-A     obstacles hold the safety distance and the    suite.scenes.scene.make_scene
          size of the robot, which so is a point
 II-A     grids numbered in sequence lie over the       kbga.encoding.make_lattice
          workspace, as fine as is wanted (Fig. 1)      KBGASettings.resolution
@@ -226,6 +226,6 @@ V        future work: probabilities of the operators   KBGASettings.adaptation_r
 from kbga.algorithm import KBGA
 from kbga.measures import GenerationReport
 from kbga.settings import KBGAPlusSettings, KBGASettings
-from suite.scene import make_scene
+from suite.scenes.scene import make_scene
 
 __all__ = ["KBGA", "GenerationReport", "KBGAPlusSettings", "KBGASettings", "make_scene"]

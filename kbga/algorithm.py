@@ -25,7 +25,7 @@ from kbga.selection import keep_elite
 from kbga.settings import KBGASettings
 from kbga.trace import trace_of
 from kbga.tuning import empty_tally, rates_of, tuned
-from suite.scene import Query, Scene
+from suite.scenes.scene import Query, Scene
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -37,7 +37,7 @@ class KBGA:
     Parameters
     ----------
     scene : Scene
-        See :func:`suite.scene.make_scene`.
+        See :func:`suite.scenes.scene.make_scene`.
     query : Query or its name, optional
         From where to where; by default the scene's first.
     settings : KBGASettings, optional
@@ -68,7 +68,7 @@ class KBGA:
     Examples
     --------
     >>> import shapely
-    >>> from suite.scene import make_scene
+    >>> from suite.scenes.scene import make_scene
     >>> room, wall = shapely.box(0, 0, 10, 10), np.array([(4, 0), (6, 0), (6, 8), (4, 8)])
     >>> ga = KBGA(make_scene("one wall", room, [wall], ((1, 1), (9, 1))), rng=1)
     >>> ga.run().tolist()
@@ -351,7 +351,7 @@ class KBGA:
         Stop as soon as a path is good enough, and look at how it went:
 
         >>> import shapely
-        >>> from suite.scene import make_scene
+        >>> from suite.scenes.scene import make_scene
         >>> walls = [shapely.box(3, 0, 4, 8), shapely.box(6, 2, 7, 10)]
         >>> scene = make_scene("two walls", shapely.box(0, 0, 10, 10), walls, ((1, 1), (9, 9)))
         >>> ga = KBGA(scene, rng=1)

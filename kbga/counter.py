@@ -8,7 +8,7 @@ same for a planner that remembers and for one that does not.
 import numpy as np
 from numpy.typing import NDArray
 
-from suite.compiled import inlined_kernel
+from suite.jit import inlined_kernel
 
 COMPUTED, ASKED, LIMIT = range(3)
 """Places of a counter, (3,) int64."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from suite.compiled import inlined_kernel, kernel
+from suite.jit import inlined_kernel, kernel
 
 LEAST_BLOCK = 2048
 """Numbers that are drawn at once at the least: a generation takes about half as many."""

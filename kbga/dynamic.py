@@ -21,7 +21,7 @@ from kbga.evaluation import evaluate_segment, sum_up
 from kbga.operators.mutation import mutate
 from kbga.problem import Problem
 from kbga.tuning import Rates
-from suite.compiled import kernel
+from suite.jit import kernel
 
 
 @kernel

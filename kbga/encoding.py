@@ -12,8 +12,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from suite.compiled import kernel
 from suite.geometry.tolerances import GRID_DECIMALS
+from suite.jit import kernel
 
 _CELLS = float(10**GRID_DECIMALS)
 

@@ -10,7 +10,6 @@ import numpy as np
 from kbga.counter import COMPUTED, OUT_OF_QUESTIONS, may_ask
 from kbga.encoding import MAX_HITS, Population, distance
 from kbga.memory import COUNT, FIRST_HIT, ROW, UNMEASURED, Memory, key_of, slot_of
-from suite.compiled import inlined_kernel, kernel
 from suite.geometry.kernels import (
     AFTER,
     FIRST_CONTACT,
@@ -27,6 +26,7 @@ from suite.geometry.kernels import (
     pinch_at,
     segment_slips_through,
 )
+from suite.jit import inlined_kernel, kernel
 
 LEAST_DEPTH = 1e-6
 """Depth of a collision that no shift measures, such as slipping through a pinch point, metres: a

@@ -24,7 +24,7 @@ from kbga.operators.repair import repair
 from kbga.problem import Problem, near_count, near_node, node_at, node_count
 from kbga.selection import tournament
 from kbga.tuning import CROSSOVER, DELETION, IMPROVEMENT, MUTATION, REPAIR, Rates, note
-from suite.compiled import kernel
+from suite.jit import kernel
 
 
 @kernel

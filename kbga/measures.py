@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kbga.encoding import Population
-from suite.compiled import kernel
+from suite.jit import kernel
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kbga.encoding import MAX_HITS, records
-from suite.compiled import inlined_kernel, kernel
+from suite.jit import inlined_kernel, kernel
 
 SEGMENT = np.dtype([("key", np.int64), ("depth", np.float64)])
 """A segment and what was found out about it.

@@ -9,7 +9,7 @@ from kbga.algorithm import KBGA
 from kbga.memory import FIRST_SLOTS, empty_memory, with_room
 from kbga.settings import KBGAPlusSettings, KBGASettings
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder, Replanner
-from suite.scene import Query, Scene, make_scene, scene_at
+from suite.scenes.scene import Query, Scene, make_scene, scene_at
 
 
 class KBGAPlanner(Planner):

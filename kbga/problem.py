@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from kbga.encoding import Lattice, distance_to_segment, make_lattice, node_x, node_y
 from kbga.memory import Memory, empty_memory
-from suite.compiled import kernel
 from suite.geometry.arrangement import Arrangement
 from suite.geometry.kernels import (
     FIRST_EDGE,
@@ -20,6 +19,7 @@ from suite.geometry.kernels import (
     pinch_at,
     segment_enters,
 )
+from suite.jit import kernel
 
 UNKNOWN, USABLE, CLOSED = 0, 1, 2
 LISTED = 4

@@ -4,7 +4,7 @@ import numpy as np
 
 from kbga.draws import Draws, draw
 from kbga.encoding import Population, copy_chromosome
-from suite.compiled import kernel
+from suite.jit import kernel
 
 
 @kernel

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kbga.settings import KBGASettings
-from suite.compiled import kernel
+from suite.jit import kernel
 
 
 class Rates(NamedTuple):

@@ -3,6 +3,6 @@
 Planners arrive by entry point: nothing in this package imports ``kbga`` or ``baselines``.
 """
 
-from suite.compiled import use_cache_of_these_sources
+from suite.jit import use_cache_of_these_sources
 
 use_cache_of_these_sources()

@@ -9,7 +9,7 @@ import typer
 
 from suite.commands import planners, reports, runs, scenes
 from suite.errors import KbgaBenchError
-from suite.quiet import end_quietly
+from suite.processes.output import end_quietly
 
 app = typer.Typer(
     name="kbga-bench",

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from suite.errors import ContractError
-from suite.scene import Query, Scene
+from suite.scenes.scene import Query, Scene
 
 INTERFACE = 1
 """Version of what this file promises; it rises when a planner written for it would break."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from suite.geometry.arrangement import arrange
-from suite.scene import Scene, make_scene
+from suite.scenes.scene import Scene, make_scene
 
 SIDE = 7
 """Side of the lattice workspace, metres."""

@@ -11,12 +11,13 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("suite", "kbga", "baselines")
 FLOORS = (
-    {"compiled", "errors", "geometry", "global_generators", "hints", "quiet"},
-    {"dynamics", "scene", "scene_file", "exact"},
-    {"planner", "plugin_class", "plugin_code", "plugin_file", "plugins"},
-    {"scenes", "record", "referee", "reported"},
-    {"conformance", "merge", "store", "stored_cells"},
-    {"harness", "dynamic", "report", "paper", "listing", "new_planner"},
+    {"errors", "jit", "geometry", "processes", "paper"},
+    {"scenes"},
+    {"planner"},
+    {"plugins", "referee"},
+    {"simulation", "store"},
+    {"conformance"},
+    {"harness", "report"},
     {"commands"},
     {"cli"},
 )

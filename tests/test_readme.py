@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from suite.planner import Budget, PlanStatus, Recorder
-from suite.referee import judge
+from suite.referee.path import judge
 from suite.scenes.catalogue import load_scene
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")

@@ -7,9 +7,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from suite.report.clock import fair
+from suite.report.all_tables import all_tables
+from suite.report.statistics.clock import fair
 from suite.report.table import Format, render
-from suite.report.tables import all_tables
 from tests import readme
 
 ROOT = Path(__file__).parents[1]

@@ -19,8 +19,8 @@ from suite.conformance.finding import Kind
 from suite.conformance.rules import examine
 from suite.conformance.subject import Subject
 from suite.harness.matrix import load_matrix
-from suite.plugin_file import VARIABLE, name_plugins
-from suite.store import read_runs
+from suite.plugins.from_file import VARIABLE, name_plugins
+from suite.store.read import read_runs
 
 ROOT = Path(__file__).parents[1]
 PLUGIN = ROOT / "tests" / "example_plugin"

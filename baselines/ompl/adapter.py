@@ -23,10 +23,10 @@ from baselines.ompl.collision import ExactCollision, state_checker
 from baselines.ompl.settings import OmplSettings, apply
 from baselines.ompl.units import metres, tables_in, unit_of
 from baselines.visibility_graph import tiny_scene
-from suite.exact import path_length
 from suite.geometry.kernels import first_collision
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
-from suite.scene import Query, Scene
+from suite.scenes.exact import path_length
+from suite.scenes.scene import Query, Scene
 
 LARGEST_SEED = 2**31 - 2
 

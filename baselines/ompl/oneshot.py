@@ -11,8 +11,8 @@ from ompl import geometric as og
 from baselines.ompl.adapter import OmplPlanner, Problem
 from baselines.ompl.settings import A_SHARE, ABOVE_0, AT_LEAST_1, OmplSettings, bound, ours
 from baselines.ompl.simplification import simplify
-from suite.exact import path_length
 from suite.planner import Abilities, Recorder
+from suite.scenes.exact import path_length
 
 
 class OneShotPlanner(OmplPlanner):

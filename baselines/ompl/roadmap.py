@@ -13,8 +13,8 @@ from ompl import geometric as og
 from baselines.ompl.adapter import OmplPlanner, Problem
 from baselines.ompl.collision import Point, do_nothing
 from baselines.ompl.settings import ABOVE_0, AT_LEAST_1, OmplSettings, bound, ours
-from suite.exact import path_length
 from suite.planner import Recorder
+from suite.scenes.exact import path_length
 
 PATIENCE_S = 4.0
 """How long a search of a roadmap may wait for OMPL's thread, where a path is known to exist."""

@@ -16,8 +16,8 @@ from baselines.ompl.adapter import OmplPlanner, Problem
 from baselines.ompl.settings import A_SHARE, ABOVE_0, AT_LEAST_1, OmplSettings, bound, ours
 from baselines.ompl.simplification import BudgetSpentError, ended_by_exception
 from baselines.ompl.watched import STRAIGHT
-from suite.exact import path_length
 from suite.planner import Recorder
+from suite.scenes.exact import path_length
 
 SNAP = 0.005
 """Share of the path's length within which a shortcut ends in a waypoint; OMPL's own default."""

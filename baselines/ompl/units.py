@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from suite.geometry.kernels import YMAX
-from suite.scene import Scene
+from suite.scenes.scene import Scene
 
 Tables = tuple[NDArray[np.float64], ...]
 
@@ -24,7 +24,7 @@ def unit_of(scene: Scene) -> float:
     Examples
     --------
     >>> import shapely
-    >>> from suite.scene import make_scene
+    >>> from suite.scenes.scene import make_scene
     >>> make = lambda side: make_scene("room", shapely.box(0, 0, side, 9), [], ((1, 1), (2, 2)))
     >>> unit_of(make(100)), unit_of(make(128)), unit_of(make(3000))
     (128.0, 128.0, 4096.0)

@@ -15,8 +15,8 @@ from ompl import geometric as og
 
 from baselines.ompl.adapter import OmplPlanner, Problem
 from baselines.ompl.settings import A_SHARE, ABOVE_0, AT_LEAST_1, OmplSettings, bound
-from suite.exact import path_length
 from suite.planner import Recorder
+from suite.scenes.exact import path_length
 
 STRAIGHT = 1.0 + 1e-9
 """A path that is longer than the straight line by less than this factor is as good as straight.

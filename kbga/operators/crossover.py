@@ -6,7 +6,7 @@ from kbga.draws import Draws, draw
 from kbga.encoding import Population, close_columns, forget
 from kbga.evaluation import evaluate_segment, sum_up
 from kbga.problem import Problem
-from suite.compiled import kernel
+from suite.jit import kernel
 
 
 @kernel

@@ -8,7 +8,7 @@ from kbga.evaluation import evaluate_within, is_free_segment, sum_up
 from kbga.operators.detour import Scratch
 from kbga.problem import Problem
 from kbga.tuning import Rates
-from suite.compiled import kernel
+from suite.jit import kernel
 
 
 @kernel

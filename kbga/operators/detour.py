@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kbga.encoding import NODE, Lattice, distance, node_x, node_y, records
-from suite.compiled import kernel
+from suite.jit import kernel
 
 CANDIDATE = np.dtype([("gene", np.int64), ("length", np.float64)], align=True)
 """A node that may be tried: its lattice number, and the length of the way over it, metres."""

@@ -8,7 +8,7 @@ from kbga.evaluation import is_free_segment, sum_up
 from kbga.operators.detour import Scratch, bring_shortest_forward, list_candidate
 from kbga.problem import Problem, is_known_usable
 from kbga.tuning import Rates
-from suite.compiled import kernel
+from suite.jit import kernel
 
 # The eight neighbours of a node, by columns and rows.
 _COLUMNS = (1, 1, 0, -1, -1, -1, 0, 1)

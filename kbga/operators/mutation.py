@@ -6,7 +6,7 @@ from kbga.draws import Draws, draw
 from kbga.encoding import Population, contains, forget, set_node
 from kbga.evaluation import evaluate_segment, sum_up
 from kbga.problem import Problem, node_at, node_count
-from suite.compiled import kernel
+from suite.jit import kernel
 
 
 @kernel

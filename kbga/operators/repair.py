@@ -17,7 +17,7 @@ from kbga.operators.detour import (
 from kbga.problem import Problem, near_count, near_node
 from kbga.settings import KBGASettings
 from kbga.tuning import Rates
-from suite.compiled import kernel
+from suite.jit import kernel
 
 
 def scratch_for(problem: Problem, settings: KBGASettings) -> Scratch:

@@ -65,6 +65,6 @@ TableStyle = Annotated[TableFormat, typer.Option("--format", help="How to print 
 
 def use_plugins(references: list[str] | None) -> None:
     """Make the planners of ``--plugin`` known to this process and those that it starts."""
-    from suite.plugin_file import name_plugins
+    from suite.plugins.from_file import name_plugins
 
     name_plugins(references or [])

@@ -26,11 +26,11 @@ from suite.commands.options import (
     use_plugins,
 )
 from suite.commands.output import print_file, print_json, working
-from suite.quiet import print_aside
+from suite.processes.output import print_aside
 
 
 class Charge(StrEnum):
-    """What simulated time planning takes; see :class:`suite.dynamic.settings.Charge`."""
+    """What simulated time planning takes; see :class:`suite.simulation.settings.Charge`."""
 
     MEASURED = "measured"
     ZERO = "zero"
@@ -77,8 +77,8 @@ def plan(
         with print_aside():
             record = run_cell(cell, recorder=recorder)
     else:
-        from suite.report.figures import check_figure_file
-        from suite.report.run_figure import draw_record
+        from suite.report.figures.run import draw_record
+        from suite.report.figures.scene import check_figure_file
 
         check_figure_file(plot)
         with print_aside():
@@ -117,10 +117,10 @@ def check(
 
     Example: kbga-bench check kbga ompl-rrtstar
     """
-    from suite.conformance.report import as_data, as_text, broken
-    from suite.harness.check import check as apply_rules
+    from suite.conformance.check import check as apply_rules
+    from suite.conformance.wording import as_data, as_text, broken
     from suite.harness.single import parse_settings
-    from suite.plugins import planner_names
+    from suite.plugins.discovery import planner_names
 
     use_plugins(plugin)
     names = planners or []
@@ -141,8 +141,8 @@ def check(
 
 def _check_several(names: list[str], limit_s: float, style: TextFormat, *, lenient: bool) -> bool:
     """Print each when it is done, and a line for each at the end; whether all is well."""
-    from suite.conformance.report import as_text
-    from suite.harness.check import check_each
+    from suite.conformance.check import check_each
+    from suite.conformance.wording import as_text
 
     done = []
     for checked in check_each(names, limit_s):
@@ -170,7 +170,7 @@ def new_planner(
 
     Example: kbga-bench new-planner my-planner --output my-planner
     """
-    from suite.new_planner import write_new_planner
+    from suite.plugins.new_planner import write_new_planner
 
     files = write_new_planner(name, output)
     for file in files:
@@ -237,11 +237,11 @@ def simulate(
 
     use_plugins(plugin)
     if plot is not None:
-        from suite.report.figures import check_figure_file
+        from suite.report.figures.scene import check_figure_file
 
         check_figure_file(plot)
     if animate is not None:
-        from suite.report.dynamic_figures import check_animation_file
+        from suite.report.figures.simulation import check_animation_file
 
         check_animation_file(animate)
     overrides = {
@@ -269,14 +269,14 @@ def simulate(
         typer.echo(as_text(record, updates=updates))
     done = simulation_of(record) if plot is not None or animate is not None else None
     if done is not None and plot is not None:
-        from suite.report.dynamic_figures import plot_snapshots
-        from suite.report.figures import save
+        from suite.report.figures.scene import save
+        from suite.report.figures.simulation import plot_snapshots
 
         with working(f"drawing {plot}"):
             save(plot_snapshots(done), plot)
         print_file(plot, style)
     if done is not None and animate is not None:
-        from suite.report.dynamic_figures import animate as write_animation
+        from suite.report.figures.simulation import animate as write_animation
 
         with working(f"drawing {animate}"):
             write_animation(done, animate)

@@ -73,7 +73,7 @@ def tables(
 
     Example: kbga-bench tables out/paper.db --only summary --only ranking
     """
-    from suite.report.results import read_tables, write_tables
+    from suite.report.results_folder import read_tables, write_tables
     from suite.report.table import Format, named, render
 
     found = named(read_tables(store, reference), only or [])
@@ -110,8 +110,8 @@ def compare(
     import numpy as np
 
     from suite.report.table import Format, render
-    from suite.report.versions import BOOTSTRAP_SEED, compare_versions
-    from suite.store import read_runs
+    from suite.report.tables.versions import BOOTSTRAP_SEED, compare_versions
+    from suite.store.read import read_runs
 
     rng = np.random.default_rng(BOOTSTRAP_SEED)
     found = compare_versions(read_runs(old), read_runs(new), rng, with_times=times)
@@ -135,11 +135,11 @@ def export(
     Example: kbga-bench export out/paper.db rows --to csv
     """
     if to in (ExportFormat.PARQUET, ExportFormat.CSV):
-        from suite.report.export import export_rows
+        from suite.report.export.files import export_rows
 
         files = export_rows(store, target, to.value)
     else:
-        from suite.report.ompl_log import write_ompl_logs, write_planner_arena
+        from suite.report.export.ompl_log import write_ompl_logs, write_planner_arena
 
         is_log = to is ExportFormat.OMPL_LOG
         files = write_ompl_logs(store, target) if is_log else [write_planner_arena(store, target)]
@@ -162,7 +162,7 @@ def results(
 
     Example: kbga-bench results out/paper.db results/paper-static --leave-out traces
     """
-    from suite.report.results import write_results
+    from suite.report.results_folder import write_results
 
     left_out = {part.value for part in leave_out or []}
     for path in write_results(store, directory, leave_out=left_out, figures=figures.value):

@@ -23,7 +23,7 @@ from suite.commands.output import print_json
 
 
 class Where(StrEnum):
-    """Where runs are run; see :mod:`suite.harness.executors`."""
+    """Where runs are run; see :mod:`suite.harness.cluster.executors`."""
 
     LOCAL = "local"
     DASK = "dask"
@@ -93,12 +93,12 @@ def run(
 
     Example: kbga-bench run paper-static --store out/paper.db --executor dask --address tcp://n1:8786
     """
-    from suite.harness.display import Display
     from suite.harness.matrix import load_matrix
+    from suite.harness.progress import Display
     from suite.harness.repeat import repeat_contended
     from suite.harness.run import Which, run_matrix
     from suite.harness.snapshots import keep_snapshots
-    from suite.store import open_store
+    from suite.store.write import open_store
 
     use_plugins(plugin)
     if (executor is Where.DASK) != (address is not None):
@@ -158,7 +158,7 @@ def _executor(address: str | None) -> Any:
     """A cluster's executor; None, if no address is given, for threads of this process."""
     if address is None:
         return nullcontext()
-    from suite.harness.executors import connect
+    from suite.harness.cluster.executors import connect
 
     return connect(address)
 
@@ -175,7 +175,7 @@ def merge(
 
     Example: kbga-bench merge all.db machine-1.db machine-2.db
     """
-    from suite.store import open_store
+    from suite.store.write import open_store
 
     with open_store(store) as opened:
         clean = _merge_into(opened, sources)
@@ -184,7 +184,7 @@ def merge(
 
 def _merge_into(store: Any, sources: list[Path]) -> bool:
     """Merge, say what came of it, and return whether nothing differs that should not."""
-    from suite.merge import merge
+    from suite.store.merge import merge
 
     done = merge(store, sources)
     for one in done:
@@ -197,8 +197,8 @@ def status(store: StoreArgument, style: TextStyle = TextFormat.TEXT) -> None:
 
     Example: kbga-bench status out/paper.db --format json
     """
-    from suite.harness.status import as_text
-    from suite.harness.status import status as status_of
+    from suite.store.status import as_text
+    from suite.store.status import status as status_of
 
     found = status_of(store)
     if style is TextFormat.JSON:
@@ -232,8 +232,8 @@ def rerun(
     """
     from suite.harness.cell import attempt_cell, run_cell
     from suite.harness.rerun import compare
-    from suite.harness.row_names import cell_of
     from suite.harness.single import as_data, as_text
+    from suite.store.row_names import cell_of
 
     use_plugins(plugin)
     cell = cell_of(store, row)

@@ -59,7 +59,7 @@ def list_command(
 
     Example: kbga-bench list planners --format json
     """
-    from suite import listing
+    from suite.commands import listing
 
     use_plugins(plugin)
     all_of, for_people = {
@@ -90,7 +90,7 @@ def generate(
 
     Example: kbga-bench generate scattered --obstacles 300 --seed 7 --output s300.geojson
     """
-    from suite.scene_file import check_scene_file, write_scene
+    from suite.scenes.geojson import check_scene_file, write_scene
     from suite.scenes.moving import moving
     from suite.scenes.scattered import scattered
 

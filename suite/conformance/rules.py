@@ -2,56 +2,64 @@
 
 from collections.abc import Callable, Iterator
 
-from suite.conformance import budgets, declared, elsewhere, left_alone, planned, repeated, replanned
 from suite.conformance.finding import Finding, Kind, NotApplicable, Result
+from suite.conformance.rules_of import (
+    budgets,
+    declaration,
+    other_processes,
+    repeatability,
+    replanners,
+    runs,
+    side_effects,
+)
 from suite.conformance.subject import Subject
 
 Rule = Callable[[Subject], Finding | NotApplicable | None]
 
-FIRST: tuple[Rule, ...] = (declared.is_a_planner, declared.abilities_are_known, planned.warms_up)
+FIRST: tuple[Rule, ...] = (declaration.is_a_planner, declaration.abilities_are_known, runs.warms_up)
 """Without these nothing can be run, and no other rule says anything."""
 
 RULES: tuple[Rule, ...] = (
     *FIRST,
-    declared.name_is_well_formed,
-    declared.settings_are_frozen,
-    declared.settings_come_back,
-    declared.pickles,
-    planned.runs_end_without_an_exception,
-    planned.refuses_with_a_reason,
-    planned.refuse_prepares_nothing,
-    planned.returns_a_plan,
-    planned.path_has_the_right_ends,
-    planned.path_is_free,
-    planned.solves_what_is_trivial,
-    planned.says_that_there_is_no_path,
-    planned.infeasible_is_true,
-    planned.exact_is_exact,
-    planned.improvements_agree_with_the_result,
-    planned.anytime_reports,
-    planned.claimed_cost_is_the_length,
-    left_alone.leaves_the_scene_alone,
-    left_alone.leaves_random_state_alone,
-    left_alone.leaves_the_folder_alone,
-    left_alone.leaves_the_environment_alone,
-    left_alone.leaves_the_clock_alone,
-    repeated.same_seed_same_path,
-    repeated.another_seed_another_stream,
-    repeated.keeps_no_state,
-    elsewhere.same_path_in_another_process,
+    declaration.name_is_well_formed,
+    declaration.settings_are_frozen,
+    declaration.settings_come_back,
+    declaration.pickles,
+    runs.runs_end_without_an_exception,
+    runs.refuses_with_a_reason,
+    runs.refuse_prepares_nothing,
+    runs.returns_a_plan,
+    runs.path_has_the_right_ends,
+    runs.path_is_free,
+    runs.solves_what_is_trivial,
+    runs.says_that_there_is_no_path,
+    runs.infeasible_is_true,
+    runs.exact_is_exact,
+    runs.improvements_agree_with_the_result,
+    runs.anytime_reports,
+    runs.claimed_cost_is_the_length,
+    side_effects.leaves_the_scene_alone,
+    side_effects.leaves_random_state_alone,
+    side_effects.leaves_the_folder_alone,
+    side_effects.leaves_the_environment_alone,
+    side_effects.leaves_the_clock_alone,
+    repeatability.same_seed_same_path,
+    repeatability.another_seed_another_stream,
+    repeatability.keeps_no_state,
+    other_processes.same_path_in_another_process,
     budgets.keeps_generations,
     budgets.keeps_checks,
     budgets.keeps_wall_time,
     budgets.keeps_cpu_time,
     budgets.ends_or_refuses_whatever_the_budget,
-    replanned.replans_end_with_a_plan,
-    replanned.replans_suit_what_is_known,
-    replanned.replans_keep_budgets,
-    replanned.replans_repeat,
-    replanned.replans_leave_things_alone,
+    replanners.replans_end_with_a_plan,
+    replanners.replans_suit_what_is_known,
+    replanners.replans_keep_budgets,
+    replanners.replans_repeat,
+    replanners.replans_leave_things_alone,
 )
 
-WARNINGS: frozenset[Rule] = frozenset({planned.claimed_cost_is_the_length})
+WARNINGS: frozenset[Rule] = frozenset({runs.claimed_cost_is_the_length})
 """Rules that ask for a look: no result becomes wrong if they are broken."""
 
 

@@ -13,15 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from suite.conformance.scenes import SmallScene, asked, small_scenes
+from suite.conformance.small_scenes import SmallScene, asked, small_scenes
 from suite.conformance.surroundings import Surroundings, fingerprint
 from suite.errors import ContractError
-from suite.exact import shortest_path
-from suite.global_generators import seed_globals
 from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder, refusal
-from suite.referee import Referee, Verdict
-from suite.reported import as_checks, as_count
-from suite.scene import Query, Scene
+from suite.processes.random_state import seed_globals
+from suite.referee.claims import as_checks, as_count
+from suite.referee.path import Referee, Verdict
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import Query, Scene
 
 SEED = 1
 

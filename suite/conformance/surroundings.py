@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from suite.scene import Query, Scene
+from suite.scenes.scene import Query, Scene
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from suite.compiled import inlined_kernel, kernel
 from suite.geometry.predicates import ERROR_BOUND, orientation
+from suite.jit import inlined_kernel, kernel
 
 
 class ObstacleArrays(NamedTuple):

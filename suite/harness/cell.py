@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from suite.errors import ContractError, PluginError, SceneError
 from suite.geometry.tolerances import COST_CLAIM_RELATIVE
 from suite.harness.contention import waited
-from suite.harness.machine import host_name, load_average
 from suite.harness.prepared import (
     build_planner,
     exact_optimum,
@@ -20,11 +19,12 @@ from suite.harness.prepared import (
     referee,
     stream,
 )
-from suite.harness.simulated import simulated
+from suite.harness.provenance import host_name, load_average
+from suite.harness.simulated_cell import simulated
 from suite.planner import Plan, PlanStatus, Recorder, refusal
-from suite.record import Cell, RunRecord
-from suite.reported import as_checks, as_count, improvements, trace
-from suite.scene import Query, scene_fingerprint
+from suite.referee.claims import as_checks, as_count, improvements, trace
+from suite.scenes.scene import Query, scene_fingerprint
+from suite.store.record import Cell, RunRecord
 
 TRACEBACK_LINES = 12
 """Enough for the exception and the frames of the planner that raised it."""

@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 from multiprocessing import forkserver
 from multiprocessing.connection import Connection
 
-from suite.global_generators import seed_globals
 from suite.harness.cell import run_cell
-from suite.harness.family import adopt_orphans, has_children
 from suite.planner import PlanStatus, Recorder
-from suite.record import Cell, RunRecord
+from suite.processes.family import adopt_orphans, has_children
+from suite.processes.random_state import seed_globals
+from suite.store.record import Cell, RunRecord
 
 PLANNING = "planning"
 """The message that says: everything is ready, the clock starts now."""

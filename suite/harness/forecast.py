@@ -7,11 +7,11 @@ from statistics import median
 
 import pandas as pd
 
-from suite.harness.cores import honest_jobs
 from suite.harness.matrix import Matrix
 from suite.harness.run import Which, to_run
-from suite.record import Cell
-from suite.store import read_runs
+from suite.processes.cores import honest_jobs
+from suite.store.read import read_runs
+from suite.store.record import Cell
 
 OVERHEAD_S = 0.03
 """Process, referee and store, for each run; about what `make harness` measures."""
@@ -119,8 +119,8 @@ def forecast(wanted: int, cells: Sequence[Cell], runs: pd.DataFrame, jobs: int) 
     cells : sequence of Cell
         Those that would be run.
     runs : DataFrame
-        Rows of the store, as :func:`suite.store.read_runs` gives them: the same variant on the same
-        scene will take as long as it did; before that, it is given its whole budget.
+        Rows of the store, as :func:`suite.store.read.read_runs` gives them: the same variant on the
+        same scene will take as long as it did; before that, it is given its whole budget.
     jobs : int
         Runs at a time.
     """

@@ -1,7 +1,7 @@
 """A run in a process of its own, with limits that hold: started, watched, killed, accounted for.
 
-The processes come from multiprocessing's fork server, warmed once (:mod:`suite.harness.warm`), so
-that a run does not pay for imports and compilation.
+The processes come from multiprocessing's fork server, warmed once
+(:mod:`suite.harness.fork_server`), so that a run does not pay for imports and compilation.
 """
 
 import contextlib
@@ -21,15 +21,15 @@ from typing import Any
 
 from suite.errors import HarnessError
 from suite.harness.child import PLANNING, Outcome, run_in_child
-from suite.harness.cores import own_core
-from suite.harness.family import kill_children, kill_family, kill_group
-from suite.harness.machine import host_name
+from suite.harness.fork_server import Warmth
 from suite.harness.matrix import Limits
-from suite.harness.memory import MemoryWatch
-from suite.harness.pipes import GarbledError, Inbox, Tail
-from suite.harness.warm import Warmth
+from suite.harness.provenance import host_name
 from suite.planner import PlanStatus
-from suite.record import Cell, RunRecord
+from suite.processes.cores import own_core
+from suite.processes.family import kill_children, kill_family, kill_group
+from suite.processes.memory import MemoryWatch
+from suite.processes.pipes import GarbledError, Inbox, Tail
+from suite.store.record import Cell, RunRecord
 
 REAP_S = 5.0
 """What a killed process may take to be gone; longer only in the kernel's uninterruptible sleep."""

@@ -45,13 +45,10 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from suite.dynamic.plain import settings_as_data
-from suite.dynamic.settings import world_settings
-from suite.errors import ContractError, MatrixError, PluginError, SceneError
+from suite.errors import ContractError, MatrixError, PluginError, SceneError, did_you_mean
 from suite.harness.toml_reader import Reader, read_toml
-from suite.hints import did_you_mean
 from suite.planner import Budget
-from suite.plugins import (
+from suite.plugins.discovery import (
     PluginInfo,
     load_planner,
     make_settings,
@@ -59,11 +56,13 @@ from suite.plugins import (
     planner_names,
     settings_as_dict,
 )
-from suite.record import Cell, World
-from suite.scene import Scene, scene_fingerprint
-from suite.scene_file import SUFFIXES
 from suite.scenes.catalogue import has_scene, load_scene
+from suite.scenes.geojson import SUFFIXES
 from suite.scenes.modifiers import MARK, expand_twins, split_modifiers
+from suite.scenes.scene import Scene, scene_fingerprint
+from suite.simulation.record import settings_as_data
+from suite.simulation.settings import world_settings
+from suite.store.record import Cell, World
 
 FOLDER = Path(__file__).parent / "matrices"
 PLANNER = "the name of a planner (see `kbga-bench list planners`)"

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 
 import psutil
 
-from suite.harness.cores import honest_jobs
+from suite.processes.cores import honest_jobs
 
 WINDOW_S = 0.2
 """Over less, the kernel's ticks of 10 ms tell too little."""

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from suite.exact import shortest_path
 from suite.planner import Planner
-from suite.plugins import load_planner, make_settings
-from suite.record import Cell
-from suite.referee import Referee
-from suite.scene import Scene
+from suite.plugins.discovery import load_planner, make_settings
+from suite.referee.path import Referee
 from suite.scenes.catalogue import load_scene
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import Scene
+from suite.store.record import Cell
 
 
 def stream(cell: Cell) -> np.random.Generator:

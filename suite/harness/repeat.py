@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import replace
 
-from suite.harness.cores import honest_jobs
-from suite.harness.executors import crew
+from suite.harness.cluster.executors import crew
 from suite.harness.isolate import start_server
 from suite.harness.matrix import Matrix
 from suite.harness.patience import Patience
@@ -24,8 +23,9 @@ from suite.harness.run import (
     run_each,
     warmth_for,
 )
-from suite.record import Cell, RunRecord
-from suite.store import Store
+from suite.processes.cores import honest_jobs
+from suite.store.record import Cell, RunRecord
+from suite.store.write import Store
 
 ATTEMPTS = 3
 """Repetitions of a row in one go: a machine that is busy now and then lets it through by then."""

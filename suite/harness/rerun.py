@@ -9,8 +9,8 @@ import pandas as pd
 import shapely
 from numpy.typing import NDArray
 
-from suite.record import RunRecord
-from suite.store import read_paths, read_runs
+from suite.store.read import read_paths, read_runs
+from suite.store.record import RunRecord
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ def compare(store: Path, again: RunRecord) -> Comparison:
     store : Path
         That has the row.
     again : RunRecord
-        Of the cell that :func:`suite.harness.row_names.cell_of` found.
+        Of the cell that :func:`suite.store.row_names.cell_of` found.
     """
     key = again.cell.key
     runs = read_runs(store)

@@ -13,15 +13,15 @@ from enum import StrEnum
 
 import numpy as np
 
-from suite.harness.executors import Crew, crew, record_of
+from suite.harness.cluster.executors import Crew, crew, record_of
+from suite.harness.fork_server import Warmth
 from suite.harness.isolate import start_server
-from suite.harness.machine import provenance
 from suite.harness.matrix import Limits, Matrix
 from suite.harness.patience import Patience
-from suite.harness.warm import Warmth
+from suite.harness.provenance import provenance
 from suite.planner import PlanStatus
-from suite.record import Cell, RunRecord, canonical_json
-from suite.store import Store
+from suite.store.record import Cell, RunRecord, canonical_json
+from suite.store.write import Store
 
 ORDER_SEED = 2003
 """Of the order in which runs are started; any number will do, as long as it stays."""

@@ -4,12 +4,12 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from suite.errors import KbgaBenchError
-from suite.exact import shortest_path
 from suite.harness.prepared import planner_class, prepared_scene
 from suite.planner import Budget, PlanStatus
-from suite.plugins import make_settings, planner_info, settings_as_dict
-from suite.record import Cell, RunRecord, World
-from suite.scene import scene_fingerprint
+from suite.plugins.discovery import make_settings, planner_info, settings_as_dict
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import scene_fingerprint
+from suite.store.record import Cell, RunRecord, World
 
 COLD = "-cold"
 """What the name of a planner that is made to plan afresh ends in; part of its random stream."""

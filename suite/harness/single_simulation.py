@@ -5,13 +5,13 @@ from itertools import pairwise
 from statistics import median
 from typing import Any
 
-from suite.dynamic.plain import from_data, settings_as_data
-from suite.dynamic.settings import world_settings
-from suite.dynamic.simulate import Simulation
 from suite.harness import single
 from suite.harness.prepared import prepared_scene
 from suite.planner import PlanStatus
-from suite.record import RunRecord, World
+from suite.simulation.record import from_data, settings_as_data
+from suite.simulation.run import Simulation
+from suite.simulation.settings import world_settings
+from suite.store.record import RunRecord, World
 
 TURN_M = 1.0
 """A way ahead that becomes longer or shorter by more is news, metres."""
@@ -53,7 +53,7 @@ def as_data(record: RunRecord) -> dict[str, Any]:
     Returns
     -------
     dict
-        What :func:`suite.dynamic.plain.as_data` gives, and whose run it was.
+        What :func:`suite.simulation.record.as_data` gives, and whose run it was.
     """
     cell = record.cell
     return {

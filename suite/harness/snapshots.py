@@ -16,8 +16,9 @@ from suite.harness.isolate import run_isolated
 from suite.harness.matrix import Matrix
 from suite.harness.run import warmth_for
 from suite.planner import Budget, PlanStatus, Snapshot
-from suite.record import Cell, RunRecord
-from suite.store import Store, read_paths, read_runs, read_snapshots
+from suite.store.read import read_paths, read_runs, read_snapshots
+from suite.store.record import Cell, RunRecord
+from suite.store.write import Store
 
 MOST_RUNS = 40
 """A store keeps the populations of so many runs of a matrix, unless it is told another number."""

@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from suite.errors import MatrixError
-from suite.hints import did_you_mean
+from suite.errors import MatrixError, did_you_mean
 
 
 @dataclass(frozen=True, slots=True, eq=False)

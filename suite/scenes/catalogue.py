@@ -14,16 +14,15 @@ drew the walls. Scenes that were once drawn on whole metres stay as they were, a
 import os
 from pathlib import Path
 
-from suite.errors import SceneError
-from suite.hints import did_you_mean
-from suite.scene import Scene, make_scene
-from suite.scene_file import SUFFIXES, read_scene
+from suite.errors import SceneError, did_you_mean
+from suite.scenes.geojson import SUFFIXES, read_scene
 from suite.scenes.modifiers import parse_modifiers, split_modifiers
 from suite.scenes.moving import moving, moving_name, parse_moving_name
 from suite.scenes.scattered import parse_scattered_name, scattered, scattered_name
+from suite.scenes.scene import Scene, make_scene
 from suite.scenes.similarity import modified
 
-_FOLDER = Path(__file__).parent
+_FOLDER = Path(__file__).parent / "files"
 _PAPER_ORDER = (
     "unstructured",
     "maze",
@@ -167,7 +166,7 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
         :mod:`suite.scenes.modifiers`. A string with a path separator or with the suffix of a scene
         file (``.geojson``, ``.json``) is a path. A Path has no modifiers.
     inflate : float
-        Radius of the robot, metres; see :func:`suite.scene.make_scene`.
+        Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`.
 
     Returns
     -------

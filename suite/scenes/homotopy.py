@@ -25,7 +25,7 @@ from suite.geometry.kernels import (
     segment_enters,
 )
 from suite.geometry.predicates import orientation
-from suite.scene import Query, Scene
+from suite.scenes.scene import Query, Scene
 
 Word = tuple[int, ...]
 """A reduced word: +k where the ray of group k - 1 is crossed from left to right, else -k."""
@@ -97,7 +97,7 @@ def route_optima(
 
     Examples
     --------
-    >>> from suite.scene import make_scene
+    >>> from suite.scenes.scene import make_scene
     >>> scene = make_scene(
     ...     "one box", shapely.box(0, 0, 10, 10), [shapely.box(4, 2, 6, 7)],
     ...     {"main": ((1, 4), (9, 4))},

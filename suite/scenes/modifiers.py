@@ -28,10 +28,9 @@ from zlib import crc32
 
 import numpy as np
 
-from suite.errors import SceneError
+from suite.errors import SceneError, did_you_mean
 from suite.geometry.tolerances import LARGEST
-from suite.hints import did_you_mean
-from suite.scene_file import SUFFIXES
+from suite.scenes.geojson import SUFFIXES
 
 MARK = "@"
 KEYS = ("turn", "shift", "scale", "twin")

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from shapely.affinity import translate
 from shapely.geometry import MultiPoint, Polygon
 
-from suite.dynamics import Detection, Dynamics, Motion, Removal, make_motion
 from suite.errors import SceneError
-from suite.exact import shortest_path
-from suite.scene import DEFAULT_QUERY, Obstacle, Scene, make_scene, scene_at
+from suite.scenes.dynamics import Detection, Dynamics, Motion, Removal, make_motion
+from suite.scenes.exact import shortest_path
 from suite.scenes.outlines import concave_outline, convex_outline
+from suite.scenes.scene import DEFAULT_QUERY, Obstacle, Scene, make_scene, scene_at
 
 WORKSPACE = shapely.box(0.0, 0.0, 100.0, 100.0)
 LOW, HIGH = 0.0, 100.0

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from shapely.geometry import Point, Polygon
 
 from suite.errors import SceneError
-from suite.scene import DEFAULT_QUERY, Scene, make_scene
 from suite.scenes.outlines import concave_outline, convex_outline
+from suite.scenes.scene import DEFAULT_QUERY, Scene, make_scene
 
 MOST = 10_000
 """Convex parts. With more, coordinates in centimetres would no longer draw their shapes."""

@@ -15,11 +15,11 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import LineString, Point, Polygon
 
-from suite.dynamics import Dynamics, Removal, make_motion
 from suite.errors import SceneError
 from suite.geometry.tolerances import GRID, GRID_DECIMALS
-from suite.scene import Obstacle, Scene, make_scene
+from suite.scenes.dynamics import Dynamics, Removal, make_motion
 from suite.scenes.modifiers import MARK, Modifiers
+from suite.scenes.scene import Obstacle, Scene, make_scene
 
 Points = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ def modified(scene: Scene, modifiers: Modifiers, *, inflate: float = 0.0) -> Sce
         Not yet inflated.
     modifiers : Modifiers
     inflate : float
-        Radius of the robot, metres; it is not scaled. See :func:`suite.scene.make_scene`.
+        Radius of the robot, metres; it is not scaled. See :func:`suite.scenes.scene.make_scene`.
 
     Returns
     -------

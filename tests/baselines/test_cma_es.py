@@ -11,8 +11,8 @@ from shapely.geometry import LineString
 
 from baselines.cma_es import CmaEsPlanner, CmaEsSettings, lengths
 from suite.planner import Budget, Plan, PlanStatus, Recorder
-from suite.scene import Scene, make_scene
 from suite.scenes.catalogue import load_scene
+from suite.scenes.scene import Scene, make_scene
 from tests.strategies import SIDE, scenes
 
 ROOM = shapely.box(0, 0, 10, 10)

@@ -9,10 +9,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from baselines.extremity import ExtremityPlanner, ExtremitySettings, pinches, regions_of
-from suite.exact import shortest_path
 from suite.planner import Budget, Plan, PlanStatus, Recorder
-from suite.scene import Query, Scene, make_scene
 from suite.scenes.catalogue import load_scene
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import Query, Scene, make_scene
 from tests.strategies import SIDE, float_polygons, scenes
 
 ROOM = shapely.box(0, 0, 10, 10)

@@ -9,12 +9,12 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 from baselines.grid_astar import GridAstarPlanner, GridAstarSettings
-from suite.exact import path_length
 from suite.geometry.kernels import first_collision
 from suite.planner import Budget, Plan, PlanStatus, Recorder
-from suite.referee import judge
-from suite.scene import Scene, make_scene
+from suite.referee.path import judge
 from suite.scenes.catalogue import load_scene
+from suite.scenes.exact import path_length
+from suite.scenes.scene import Scene, make_scene
 
 ROOM = shapely.box(0, 0, 10, 10)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from suite.planner import Budget, PlanStatus, Recorder
-from suite.plugins import load_planner
+from suite.plugins.discovery import load_planner
 from suite.scenes.catalogue import load_scene
 
 BY_THE_CLOCK = ("cmaes", "grid-astar", "extremitypathfinder", "ompl-rrtstar", "ompl-shortcut")

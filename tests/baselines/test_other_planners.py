@@ -12,13 +12,13 @@ from baselines.cma_es import CmaEsPlanner, CmaEsSettings
 from baselines.extremity import ExtremityPlanner
 from baselines.grid_astar import GridAstarPlanner, GridAstarSettings
 from suite.errors import PluginError
-from suite.exact import shortest_path
 from suite.harness.cell import run_cell
 from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder
-from suite.plugins import available_planners, load_planner
-from suite.referee import judge
-from suite.scene import Query, Scene, make_scene, scene_fingerprint
+from suite.plugins.discovery import available_planners, load_planner
+from suite.referee.path import judge
 from suite.scenes.catalogue import load_scene
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import Query, Scene, make_scene, scene_fingerprint
 from tests.strategies import scenes
 from tests.suite.harness.records import make_cell
 

@@ -11,8 +11,8 @@ from baselines.plain_ga import PlainGAPlanner, PlainGASettings
 from kbga.plugin import KBGAPlanner
 from kbga.settings import KBGASettings
 from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder
-from suite.referee import judge
-from suite.report.studies import MUTATION_RATE, best_value, sweep
+from suite.referee.path import judge
+from suite.report.tables.studies import MUTATION_RATE, best_value, sweep
 from suite.scenes.catalogue import load_scene
 from tests.kbga.laboratory import scene_of
 

@@ -4,9 +4,9 @@ import shapely
 
 from baselines.visibility_graph import VisibilityGraphPlanner
 from suite.planner import Budget, Plan, PlanStatus, Recorder
-from suite.referee import judge
-from suite.scene import Scene, make_scene
+from suite.referee.path import judge
 from suite.scenes.catalogue import load_scene
+from suite.scenes.scene import Scene, make_scene
 
 ROOM = shapely.box(0, 0, 10, 10)
 QUERY = {"main": ((0, 3), (10, 3))}

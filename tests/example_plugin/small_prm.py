@@ -6,7 +6,7 @@ import numpy as np
 
 from suite.geometry.kernels import first_collision
 from suite.planner import Abilities, Plan, Planner, PlanStatus
-from suite.scene import make_scene
+from suite.scenes.scene import make_scene
 
 
 @dataclass(frozen=True)

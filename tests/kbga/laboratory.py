@@ -35,7 +35,7 @@ from kbga.selection import keep_elite
 from kbga.settings import KBGAPlusSettings, KBGASettings
 from kbga.tuning import Rates, empty_tally, rates_of
 from suite.geometry.kernels import first_collision
-from suite.scene import Query, Scene, make_scene
+from suite.scenes.scene import Query, Scene, make_scene
 from tests.suite.geometry.lattice import Rng, random_solid
 
 BLOCK = 20_000

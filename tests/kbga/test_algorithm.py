@@ -20,11 +20,11 @@ from kbga.algorithm import KBGA
 from kbga.evolution import next_children
 from kbga.settings import KBGAPlusSettings, KBGASettings
 from kbga.tuning import rates_of
-from suite.exact import shortest_path
 from suite.geometry.kernels import first_collision
-from suite.referee import judge
-from suite.scene import Scene
+from suite.referee.path import judge
 from suite.scenes.catalogue import load_scene, scene_names
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import Scene
 from tests.kbga.laboratory import ENDS, random_scene, scene_of
 from tests.suite.geometry.lattice import COMPILED, counts, pinches
 

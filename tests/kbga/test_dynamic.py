@@ -15,10 +15,10 @@ from kbga.encoding import path_of
 from kbga.evolution import best_feasible
 from kbga.memory import empty_memory
 from kbga.plugin import KBGAPlanner
-from suite.exact import shortest_path
 from suite.planner import Budget, PlanStatus, Recorder
-from suite.referee import judge
-from suite.scene import Query, Scene
+from suite.referee.path import judge
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import Query, Scene
 from tests.kbga.laboratory import Laboratory, check, laboratory, random_scene, scene_of
 from tests.suite.geometry.lattice import counts
 

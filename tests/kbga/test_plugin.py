@@ -13,10 +13,10 @@ import shapely
 from kbga.plugin import KBGAPlanner, KBGAPlusPlanner
 from kbga.settings import KBGASettings
 from suite.planner import Budget, Plan, PlanStatus, Recorder
-from suite.plugins import make_settings, settings_as_dict
-from suite.record import canonical_json
-from suite.referee import judge
-from suite.scene import Scene
+from suite.plugins.discovery import make_settings, settings_as_dict
+from suite.referee.path import judge
+from suite.scenes.scene import Scene
+from suite.store.record import canonical_json
 from tests.kbga.laboratory import scene_of
 from tests.suite.geometry.lattice import COMPILED, counts
 

@@ -10,7 +10,7 @@ from kbga.problem import MOST_NEAR, Problem, is_known_usable, is_usable, make_pr
 from kbga.settings import KBGAPlusSettings
 from suite.geometry.arrangement import arrange
 from suite.geometry.kernels import FIRST_EDGE, LAST_EDGE
-from suite.scene import Scene
+from suite.scenes.scene import Scene
 from tests.kbga.laboratory import all_near_nodes, near_nodes, random_scene, scene_of
 from tests.suite.geometry.lattice import counts, pinches, random_solid
 

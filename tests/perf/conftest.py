@@ -1,6 +1,6 @@
 """What the JSON of a benchmark says about the machine and the versions."""
 
-from suite.harness.machine import provenance
+from suite.harness.provenance import provenance
 
 
 def pytest_benchmark_update_machine_info(config, machine_info):

@@ -21,14 +21,15 @@ import shapely
 
 from suite.harness.cell import run_cell
 from suite.harness.isolate import run_isolated, start_server
-from suite.harness.machine import provenance
 from suite.harness.matrix import Limits
+from suite.harness.provenance import provenance
 from suite.harness.run import warmth_for
 from suite.harness.single import cell_for
-from suite.record import Cell, RunRecord
-from suite.scene import make_scene
-from suite.scene_file import write_scene
-from suite.store import Store, open_store, read_runs
+from suite.scenes.geojson import write_scene
+from suite.scenes.scene import make_scene
+from suite.store.read import read_runs
+from suite.store.record import Cell, RunRecord
+from suite.store.write import Store, open_store
 from tests.perf.harness_table import write
 
 PLANNER, SCENE = "kbga", "zigzag"

@@ -4,11 +4,11 @@ from functools import cache
 
 import numpy as np
 
-from suite.exact import shortest_path
 from suite.planner import Budget, Plan, Planner, Recorder
-from suite.plugins import load_planner
-from suite.scene import Scene
+from suite.plugins.discovery import load_planner
 from suite.scenes.catalogue import load_scene
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import Scene
 
 SCENES = (
     "unstructured",

@@ -7,10 +7,10 @@ import pytest
 import shapely
 from numba import njit
 
-from suite.exact import shortest_path
 from suite.geometry.arrangement import arrange
 from suite.geometry.kernels import segment_enters, segment_enters_tables
 from suite.scenes.catalogue import load_scene
+from suite.scenes.exact import shortest_path
 from tests.perf.series import SCENES
 
 SEGMENTS = 1000

@@ -4,7 +4,7 @@ import math
 import pytest
 
 from suite.harness.matrix import load_matrix
-from suite.plugins import load_planner
+from suite.plugins.discovery import load_planner
 from tests.perf.performance_table import (
     EVERYWHERE,
     Measured,

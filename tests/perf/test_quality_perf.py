@@ -3,7 +3,7 @@
 import pytest
 
 from suite.planner import PlanStatus
-from suite.referee import Referee
+from suite.referee.path import Referee
 from tests.perf.series import SCENES, SEEDS, optimum, plan, planner, scene
 
 

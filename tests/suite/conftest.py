@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 import shapely
 
-from suite.scene import make_scene
-from suite.scene_file import write_scene
+from suite.scenes.geojson import write_scene
+from suite.scenes.scene import make_scene
 
 HOSTILE = Path(__file__).parent / "harness" / "hostile_planners.py"
 

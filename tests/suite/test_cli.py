@@ -12,12 +12,12 @@ import pytest
 import shapely
 
 from suite.cli import main
-from suite.dynamics import Dynamics, constant_speed
 from suite.planner import PlanStatus
-from suite.scene import Obstacle, make_scene
-from suite.scene_file import read_scene, write_scene
 from suite.scenes.catalogue import aligned_names, load_scene
-from suite.store import read_runs
+from suite.scenes.dynamics import Dynamics, constant_speed
+from suite.scenes.geojson import read_scene, write_scene
+from suite.scenes.scene import Obstacle, make_scene
+from suite.store.read import read_runs
 from tests.suite.commands import Done, in_own_process
 
 

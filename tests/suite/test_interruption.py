@@ -12,7 +12,7 @@ import numpy as np
 import psutil
 import pytest
 
-from suite.store import read_paths, read_runs
+from suite.store.read import read_paths, read_runs
 from tests.suite.commands import COMMAND, hear_interrupts, in_own_process
 
 SEEDS = 4

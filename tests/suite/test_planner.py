@@ -6,7 +6,7 @@ import pytest
 import shapely
 
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, refusal
-from suite.scene import make_scene
+from suite.scenes.scene import make_scene
 
 SCENE = make_scene("room", shapely.box(0, 0, 9, 9), [], ((1, 1), (8, 8)))
 

@@ -12,14 +12,14 @@ import numpy as np
 import plotly.graph_objects as go
 from numpy.typing import NDArray
 
-from suite.report.anytime import Array, Steps, first_within, only
-from suite.report.clock import WALL, by_the_clock
-from suite.report.convergence_figures import CLOCKS, counted_groups, gap_bands, grid_over
+from suite.report.figures.convergence import CLOCKS, counted_groups, gap_bands, grid_over
+from suite.report.figures.panels import LEAST_GAP, plain_number
+from suite.report.figures.runtime import CLOCKS as ECDF_CLOCKS
+from suite.report.figures.runtime import TARGETS
 from suite.report.html.appearance import PLANNERS_AT_MOST, Appearance, appearance
 from suite.report.html.scenes import SCENES_AT_MOST
-from suite.report.panels import LEAST_GAP, plain_number
-from suite.report.runtime_figures import CLOCKS as ECDF_CLOCKS
-from suite.report.runtime_figures import TARGETS
+from suite.report.statistics.anytime import Array, Steps, first_within, only
+from suite.report.statistics.clock import WALL, by_the_clock
 
 HIGHEST = 1e6
 """Per cent: stands for no path, above every chart."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
-from suite.scene import Query, Scene
+from suite.scenes.scene import Query, Scene
 
 LONGER_SIDE = 1000.0
 MARGIN = 25

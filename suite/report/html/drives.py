@@ -3,14 +3,14 @@
 import base64
 from dataclasses import dataclass
 
-from suite.dynamic.plain import from_data
 from suite.errors import KbgaBenchError
-from suite.report.dynamic_figures import plot_snapshots
-from suite.report.figures import as_png
+from suite.report.figures.scene import as_png
+from suite.report.figures.simulation import plot_snapshots
 from suite.report.html.evidence import Evidence
-from suite.scene import scene_fingerprint
 from suite.scenes.catalogue import load_scene
-from suite.store import read_simulation
+from suite.scenes.scene import scene_fingerprint
+from suite.simulation.record import from_data
+from suite.store.read import read_simulation
 
 SHEETS_AT_MOST = 24
 

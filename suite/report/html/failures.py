@@ -5,8 +5,8 @@ from typing import Any
 import pandas as pd
 
 from suite.planner import PlanStatus
-from suite.report.compared import places
 from suite.report.table import Table
+from suite.report.tables.compared import places
 
 REASONS_AT_MOST = 30
 """Told in full; of more there is the last line."""
@@ -27,7 +27,7 @@ def failures_table(runs: pd.DataFrame) -> Table:
     Parameters
     ----------
     runs : DataFrame
-        As :func:`suite.store.read_runs` gives it.
+        As :func:`suite.store.read.read_runs` gives it.
     """
     rows = [
         {

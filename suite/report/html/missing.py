@@ -5,9 +5,9 @@ from collections.abc import Iterable
 import numpy as np
 import pandas as pd
 
-from suite.report.clock import by_the_clock
 from suite.report.html.evidence import Evidence
 from suite.report.html.scenes import ScenePicture
+from suite.report.statistics.clock import by_the_clock
 from suite.report.table import Table
 
 NAMES_AT_MOST = 8

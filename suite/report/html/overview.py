@@ -7,13 +7,13 @@ import numpy as np
 import pandas as pd
 
 from suite.planner import PlanStatus
-from suite.report.compared import at_a_glance
+from suite.report.figures.panels import LEAST_GAP
 from suite.report.html.cells import Sheet, sheet
 from suite.report.html.evidence import Evidence
 from suite.report.html.shades import shaded
-from suite.report.panels import LEAST_GAP
-from suite.report.summary import summary
 from suite.report.table import Table
+from suite.report.tables.compared import at_a_glance
+from suite.report.tables.summary import summary
 
 GAP_NOTE = (
     "Mean gap of the paths found to the exact shortest one, per cent: 0 is optimal. In brackets "

@@ -10,7 +10,7 @@ from suite.planner import Snapshot
 from suite.report.html.drawing import Drawing
 from suite.report.html.evidence import Evidence
 from suite.report.html.scenes import ScenePicture
-from suite.store import read_trace
+from suite.store.read import read_trace
 
 RUNS_AT_MOST = 40
 CHARACTERS_AT_MOST = 3_000_000

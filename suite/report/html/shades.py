@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.colors import to_hex, to_rgb
 
+from suite.report.figures.overview import NOTHING, colouring
 from suite.report.html.cells import Sheet
-from suite.report.overview_figure import NOTHING, colouring
 
 INKS = ("#000000", "#ffffff")
 

@@ -5,7 +5,7 @@ import shapely
 
 from baselines.ompl.adapter import OmplPlanner
 from suite.planner import Budget, Plan, Recorder
-from suite.scene import Query, Scene, make_scene
+from suite.scenes.scene import Query, Scene, make_scene
 
 ROOM = shapely.box(0, 0, 10, 10)
 BOX = shapely.box(4, 2, 6, 8)

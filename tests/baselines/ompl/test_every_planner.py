@@ -27,11 +27,11 @@ from baselines.ompl.watched import (
     RRTstarPlanner,
     SORRTstarPlanner,
 )
-from suite.exact import shortest_path
 from suite.planner import Budget, PlanStatus, Recorder, refusal
-from suite.referee import Referee
-from suite.scene import Query
+from suite.referee.path import Referee
 from suite.scenes.catalogue import load_scene
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import Query
 from tests.baselines.ompl.laboratory import RING, SCENES, run, scene_of
 
 PLANNERS = (
@@ -214,7 +214,7 @@ def test_another_seed_gives_another_path(planner):
 
 PROGRAM = """
 import sys, numpy as np
-from suite.plugins import load_planner
+from suite.plugins.discovery import load_planner
 from suite.planner import Budget, Recorder
 from suite.scenes.catalogue import load_scene
 scene = load_scene("obstacles_20")

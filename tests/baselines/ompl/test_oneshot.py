@@ -12,7 +12,7 @@ from baselines.ompl.oneshot import (
     SimplifiedPlanner,
 )
 from suite.planner import Budget, PlanAfresh, PlanStatus, Recorder
-from suite.referee import Referee
+from suite.referee.path import Referee
 from suite.scenes.catalogue import load_scene
 from tests.baselines.ompl.laboratory import RING, SCENES, run, scene_of
 

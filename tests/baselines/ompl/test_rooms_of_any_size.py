@@ -23,9 +23,9 @@ from baselines.ompl.watched import (
 )
 from suite.geometry.kernels import segment_enters_tables
 from suite.planner import Budget, PlanStatus
-from suite.referee import Referee
-from suite.scene import Scene, make_scene
+from suite.referee.path import Referee
 from suite.scenes.catalogue import load_scene
+from suite.scenes.scene import Scene, make_scene
 from tests.baselines.ompl.laboratory import BOX, run, scene_of
 
 ANY_KIND = (
@@ -104,8 +104,8 @@ import sys, numpy as np
 from baselines.ompl.watched import AORRTCPlanner
 from suite.geometry.kernels import first_collision
 from suite.planner import Budget, Recorder
-from suite.referee import Referee
-from suite.scene import Query
+from suite.referee.path import Referee
+from suite.scenes.scene import Query
 from suite.scenes.catalogue import load_scene
 from tests.baselines.ompl.test_rooms_of_any_size import resized
 scene = resized(load_scene(sys.argv[1]), float(sys.argv[2]) / 100.0)

@@ -5,10 +5,10 @@ import pytest
 from baselines.ompl.adapter import Problem
 from baselines.ompl.oneshot import RRTConnectPlanner, RRTConnectSettings
 from baselines.ompl.shortcut import ShortcutPlanner, ShortcutSettings
-from suite.exact import shortest_path
 from suite.planner import Budget, PlanStatus, Recorder
-from suite.referee import Referee
+from suite.referee.path import Referee
 from suite.scenes.catalogue import load_scene
+from suite.scenes.exact import shortest_path
 from tests.baselines.ompl.laboratory import SCENES, run, scene_of
 
 

@@ -7,7 +7,7 @@ from ompl import base as ob
 from ompl import geometric as og
 
 import baselines.ompl
-from suite.plugins import load_planner, planner_names
+from suite.plugins.discovery import load_planner, planner_names
 
 ROWS = re.findall(
     r"^(ompl-\w+|\(left out\)) +(\w+) *(anytime|one-shot)?", baselines.ompl.__doc__, flags=re.M

@@ -11,7 +11,7 @@ from baselines.ompl.watched import (
     SORRTstarPlanner,
 )
 from suite.planner import Budget, PlanStatus, Recorder
-from suite.referee import Referee
+from suite.referee.path import Referee
 from tests.baselines.ompl.laboratory import L_SHAPED, run, scene_of
 
 WATCHED = (

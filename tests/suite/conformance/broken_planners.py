@@ -13,10 +13,10 @@ from typing import ClassVar
 import numpy as np
 import shapely
 
-from suite.exact import path_length, shortest_path
 from suite.geometry.kernels import first_collision
 from suite.planner import Abilities, Plan, Planner, PlanStatus
-from suite.scene import make_scene
+from suite.scenes.exact import path_length, shortest_path
+from suite.scenes.scene import make_scene
 
 ALL_BUDGETS = frozenset({"wall_s", "cpu_s", "generations", "checks"})
 

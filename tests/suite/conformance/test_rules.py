@@ -4,9 +4,9 @@ import inspect
 
 import pytest
 
-from suite.conformance.elsewhere import same_path_in_another_process
 from suite.conformance.finding import Kind
 from suite.conformance.rules import RULES, WARNINGS, apply, rule_name
+from suite.conformance.rules_of.other_processes import same_path_in_another_process
 from suite.conformance.subject import Subject
 from tests.suite.conformance import broken_planners, broken_replanners
 

@@ -22,9 +22,9 @@ import numpy as np
 import psutil
 import shapely
 
-from suite.exact import shortest_path
 from suite.planner import Abilities, Improvement, Plan, Planner, PlanStatus
-from suite.scene import make_scene
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import make_scene
 
 
 class _Base(Planner):

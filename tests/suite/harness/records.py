@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from suite.planner import Budget, Improvement, PlanStatus
-from suite.record import Cell, RunRecord
+from suite.store.record import Cell, RunRecord
 
 
 def make_cell(**changes: Any) -> Cell:

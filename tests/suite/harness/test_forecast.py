@@ -6,8 +6,9 @@ from suite.harness.forecast import NOTHING, forecast, forecast_matrix
 from suite.harness.matrix import load_matrix
 from suite.harness.run import Which
 from suite.planner import Budget
-from suite.record import World
-from suite.store import open_store, read_runs
+from suite.store.read import read_runs
+from suite.store.record import World
+from suite.store.write import open_store
 from tests.suite.harness.records import make_cell, make_record
 
 UNLIMITED = {"budget": Budget()}

@@ -5,7 +5,8 @@ import pytest
 
 from suite.harness.matrix import load_matrix
 from suite.harness.run import run_matrix
-from suite.store import open_store, read_events, read_first_measures, read_runs, read_traces
+from suite.store.read import read_events, read_first_measures, read_runs, read_traces
+from suite.store.write import open_store
 
 # variant: how its run must end, and what its row must say.
 WANTED = {

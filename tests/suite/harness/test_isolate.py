@@ -6,14 +6,14 @@ import numpy as np
 import psutil
 import pytest
 
-from suite.harness import warm
+from suite.harness import fork_server
 from suite.harness.cell import build_planner
-from suite.harness.cores import honest_cores
+from suite.harness.fork_server import Warmth
 from suite.harness.isolate import run_isolated, stop_server
 from suite.harness.matrix import Limits
 from suite.harness.single import cell_for
-from suite.harness.warm import Warmth
 from suite.planner import PlanStatus
+from suite.processes.cores import honest_cores
 
 SHORT = Limits(wall_s=0.5, warm_up_s=120.0)
 
@@ -143,7 +143,7 @@ def test_warming_up_has_the_same_limit_on_memory(run):
 
 def test_a_planner_that_takes_the_memory_when_the_fork_server_tries_it_stays_cold(hostile):
     planner = build_planner("eats-in-warm-up", {})
-    assert not warm._survives(planner.warm_up, limit_s=120.0, memory_bytes=400_000_000)
+    assert not fork_server._survives(planner.warm_up, limit_s=120.0, memory_bytes=400_000_000)
 
 
 def test_runs_leave_the_environment_and_the_folder_of_the_harness_alone(run):

@@ -6,7 +6,7 @@ import pytest
 from suite.errors import MatrixError
 from suite.harness.matrix import FOLDER, Limits, load_matrix, matrix_names
 from suite.planner import Budget
-from suite.plugins import available_planners
+from suite.plugins.discovery import available_planners
 from suite.scenes.catalogue import scene_names
 
 GOOD = """

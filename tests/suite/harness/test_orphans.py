@@ -17,7 +17,7 @@ HARNESS = """
 import sys
 from suite.harness.run import run_matrix
 from suite.harness.matrix import load_matrix
-from suite.store import open_store
+from suite.store.write import open_store
 from pathlib import Path
 with open_store(Path(sys.argv[2])) as store:
     run_matrix(load_matrix(sys.argv[1]), store, jobs=int(sys.argv[3]))

@@ -6,8 +6,8 @@ import time
 import pytest
 
 from suite.harness import patience as module
-from suite.harness.cores import honest_jobs
 from suite.harness.patience import OthersLoad, Patience
+from suite.processes.cores import honest_jobs
 
 BURN = "import time\nwhile time.process_time() < 0.4: pass\n"
 

@@ -1,7 +1,7 @@
+from suite.harness.fork_server import Warmth
 from suite.harness.isolate import run_isolated
 from suite.harness.matrix import Limits
 from suite.harness.single import cell_for
-from suite.harness.warm import Warmth
 
 
 def test_a_run_finds_the_whole_suite_loaded(hostile, wall_file):

@@ -3,8 +3,9 @@ import pytest
 from suite.harness.matrix import load_matrix
 from suite.harness.repeat import ATTEMPTS, repeat_contended
 from suite.harness.run import run_matrix
-from suite.harness.status import as_text, status
-from suite.store import open_store, read_paths, read_runs
+from suite.store.read import read_paths, read_runs
+from suite.store.status import as_text, status
+from suite.store.write import open_store
 
 PATIENCE_S = 20.0
 """More than anybody needs; a test that waits so long fails for what it finds then."""

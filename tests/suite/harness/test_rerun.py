@@ -4,11 +4,11 @@ import pytest
 
 from suite.harness.cell import run_cell
 from suite.harness.rerun import compare
-from suite.harness.row_names import cell_of
 from suite.harness.single import cell_for
 from suite.harness.single_simulation import world_for
 from suite.planner import Budget
-from suite.store import open_store
+from suite.store.row_names import cell_of
+from suite.store.write import open_store
 from tests.suite.harness.records import make_cell, make_record
 
 

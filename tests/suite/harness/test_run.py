@@ -5,8 +5,9 @@ import pytest
 
 from suite.harness.matrix import load_matrix
 from suite.harness.run import Which, interleaved, run_matrix
-from suite.harness.status import status
-from suite.store import open_store, read_paths, read_runs, read_sessions
+from suite.store.read import read_paths, read_runs, read_sessions
+from suite.store.status import status
+from suite.store.write import open_store
 from tests.suite.harness.records import make_cell
 
 

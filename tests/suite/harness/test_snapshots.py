@@ -6,7 +6,8 @@ import pytest
 from suite.harness.matrix import load_matrix
 from suite.harness.run import Which, run_matrix
 from suite.harness.snapshots import MOST_GENERATIONS, chosen_generations, keep_snapshots
-from suite.store import open_store, read_paths, read_runs, read_snapshots
+from suite.store.read import read_paths, read_runs, read_snapshots
+from suite.store.write import open_store
 
 TEXT = """
 scenes = ["zigzag", "double_u"]

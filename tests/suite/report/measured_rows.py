@@ -8,9 +8,10 @@ from typing import Any
 import pandas as pd
 
 from suite.planner import Improvement
-from suite.record import RunRecord
-from suite.report.anytime import Steps, steps_of
-from suite.store import open_store, read_events, read_runs
+from suite.report.statistics.anytime import Steps, steps_of
+from suite.store.read import read_events, read_runs
+from suite.store.record import RunRecord
+from suite.store.write import open_store
 from tests.suite.report.study_rows import run
 
 

@@ -7,8 +7,9 @@ from typing import Any
 import pandas as pd
 
 from suite.planner import PlanStatus
-from suite.record import RunRecord
-from suite.store import open_store, read_runs
+from suite.store.read import read_runs
+from suite.store.record import RunRecord
+from suite.store.write import open_store
 from tests.suite.harness.records import make_cell, make_record
 
 OPTIMUM = 100.0

@@ -9,9 +9,7 @@ import pytest
 import shapely
 from numba import njit
 
-from suite.dynamic.settings import WorldSettings
 from suite.errors import SceneError
-from suite.exact import shortest_path
 from suite.geometry.kernels import first_collision, segment_enters
 from suite.scenes.catalogue import (
     aligned_names,
@@ -22,7 +20,9 @@ from suite.scenes.catalogue import (
     scene_file,
     scene_names,
 )
+from suite.scenes.exact import shortest_path
 from suite.scenes.homotopy import route_optima
+from suite.simulation.settings import WorldSettings
 
 FIGURES = {
     "unstructured": "6",

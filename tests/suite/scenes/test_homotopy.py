@@ -2,11 +2,11 @@ import numpy as np
 import pytest
 import shapely
 
-from suite.exact import shortest_path
 from suite.geometry.kernels import first_collision
-from suite.scene import Scene, make_scene
 from suite.scenes.catalogue import load_scene, scene_names
+from suite.scenes.exact import shortest_path
 from suite.scenes.homotopy import reduced, route_optima
+from suite.scenes.scene import Scene, make_scene
 
 
 def room(*obstacles, start=(0, 5), goal=(20, 5)) -> Scene:

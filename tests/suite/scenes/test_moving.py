@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 import shapely
 
-from suite.dynamic.settings import world_settings
-from suite.dynamic.trajectory import make_trajectory
-from suite.dynamic.world import World
-from suite.dynamics import as_properties
 from suite.errors import SceneError
-from suite.exact import shortest_path
-from suite.scene import Query, scene_at, scene_fingerprint
-from suite.scene_file import read_scene, write_scene
 from suite.scenes.catalogue import has_scene, load_scene, scene_file
+from suite.scenes.dynamics import as_properties
+from suite.scenes.exact import shortest_path
+from suite.scenes.geojson import read_scene, write_scene
 from suite.scenes.moving import TIME_LIMIT, moving
+from suite.scenes.scene import Query, scene_at, scene_fingerprint
+from suite.simulation.settings import world_settings
+from suite.simulation.trajectory import make_trajectory
+from suite.simulation.world import World
 
 SEEDS = range(30)
 

@@ -3,12 +3,12 @@ import pytest
 import shapely
 
 from suite.errors import SceneError
-from suite.exact import shortest_path
-from suite.referee import judge
-from suite.scene import scene_fingerprint
-from suite.scene_file import read_scene, write_scene
+from suite.referee.path import judge
 from suite.scenes.catalogue import load_scene
+from suite.scenes.exact import shortest_path
+from suite.scenes.geojson import read_scene, write_scene
 from suite.scenes.scattered import GAP, scattered
+from suite.scenes.scene import scene_fingerprint
 
 SIZES = (1, 2, 3, 5, 17, 40, 100)
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import shapely
 
-from suite.dynamics import Detection, Dynamics, Motion, Removal, make_motion
 from suite.errors import SceneError
-from suite.exact import shortest_path
-from suite.scene import Obstacle, Scene, make_scene, scene_at, scene_fingerprint
 from suite.scenes.catalogue import aligned_names, dynamic_names, load_scene, scene_names
+from suite.scenes.dynamics import Detection, Dynamics, Motion, Removal, make_motion
+from suite.scenes.exact import shortest_path
 from suite.scenes.modifiers import parse_modifiers
+from suite.scenes.scene import Obstacle, Scene, make_scene, scene_at, scene_fingerprint
 from suite.scenes.similarity import modified
 
 EVERY = [*scene_names(), *dynamic_names(), *aligned_names(), "scattered_30-7"]

@@ -8,8 +8,8 @@ from suite.harness.cell import run_cell
 from suite.harness.single import cell_for
 from suite.harness.snapshots import chosen_generations
 from suite.planner import PlanStatus, Recorder
-from suite.record import Cell, RunRecord
-from suite.store import open_store
+from suite.store.record import Cell, RunRecord
+from suite.store.write import open_store
 from tests.suite.harness.records import make_cell, make_record
 
 SESSION = {

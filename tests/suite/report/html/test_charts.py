@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from suite.report.anytime import steps_of
+from suite.report.figures.panels import numbered
+from suite.report.figures.runtime import TARGETS
 from suite.report.html.appearance import COLOURS, PLANNERS_AT_MOST, appearance
 from suite.report.html.charts import ALL_SCENES, LINES_AT_MOST, convergence_chart, ecdf_chart
 from suite.report.html.evidence import read_evidence
 from suite.report.html.player import played_runs
 from suite.report.html.scenes import SCENES_AT_MOST, scene_pictures
-from suite.report.panels import numbered
-from suite.report.runtime_figures import TARGETS
-from suite.store import read_events, read_paths, read_runs
+from suite.report.statistics.anytime import steps_of
+from suite.store.read import read_events, read_paths, read_runs
 from tests.suite.harness.records import make_cell, make_record
 from tests.suite.report.html.stores import failed, some_store, write_store
 

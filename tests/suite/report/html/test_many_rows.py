@@ -6,7 +6,7 @@ import subprocess
 import pytest
 
 from suite.planner import Improvement
-from suite.store import open_store
+from suite.store.write import open_store
 from tests.suite.commands import COMMAND
 from tests.suite.harness.records import make_cell, make_record
 from tests.suite.report.html.stores import SESSION

@@ -15,13 +15,13 @@ from suite.harness.cell import run_cell
 from suite.harness.single import cell_for
 from suite.harness.single_simulation import world_for
 from suite.planner import PlanStatus
+from suite.report.figures.overview import NOTHING
 from suite.report.html.page import write_report
 from suite.report.html.shades import contrast
-from suite.report.overview_figure import NOTHING
-from suite.report.results import read_tables
+from suite.report.results_folder import read_tables
 from suite.report.table import as_texts
-from suite.scene import make_scene
-from suite.scene_file import write_scene
+from suite.scenes.geojson import write_scene
+from suite.scenes.scene import make_scene
 from tests.suite.commands import in_own_process
 from tests.suite.harness.records import make_cell, make_record
 from tests.suite.report.html.stores import failed, ran, some_store, write_store

@@ -1,0 +1,1 @@
+"""Other people's planners: found, checked, given their settings, hashed."""

@@ -1,0 +1,1 @@
+"""What a process is to us: what it prints, its generators, its descendants, memory, cores."""

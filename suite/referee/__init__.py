@@ -1,0 +1,1 @@
+"""The referee: paths judged, claims read, one clock."""

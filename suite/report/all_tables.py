@@ -1,0 +1,115 @@
+"""All tables of a store's runs: pure functions of its rows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+
+from suite.report.paper.contrasts import contrast_table
+from suite.report.paper.tables import COST_NOTE, paper_tables
+from suite.report.paper.verdicts import Rows, verdict_table
+from suite.report.rows import newest
+from suite.report.statistics.anytime import Steps, steps_of
+from suite.report.statistics.clock import dropped_note, fair, joined
+from suite.report.table import Table
+from suite.report.tables.ablation import ablation_tables
+from suite.report.tables.alignment import alignment_tables, without_repeats
+from suite.report.tables.budgets import budget_tables
+from suite.report.tables.differences import difference_tables
+from suite.report.tables.ranking import ranking_tables
+from suite.report.tables.simulated import is_simulated, simulated_tables
+from suite.report.tables.statistics import check_reference, statistics_tables
+from suite.report.tables.studies import study_tables
+from suite.report.tables.summary import summary_tables
+from suite.report.tables.targets import target_tables
+
+BOOTSTRAP_SEED = 2004
+"""Any will do; the same rows give the same intervals."""
+
+
+def all_tables(
+    runs: pd.DataFrame,
+    first: pd.DataFrame | None = None,
+    events: pd.DataFrame | None = None,
+    *,
+    simulations: pd.DataFrame | None = None,
+    replans: pd.DataFrame | None = None,
+    reference: str | None = None,
+) -> list[Table]:
+    """The summary, the studies, how the planners compare, and the paper's comparisons.
+
+    Those that these runs can't answer are left out.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        As :func:`suite.store.read.read_runs` gives it.
+    first : DataFrame, optional
+        As :func:`suite.store.read.read_first_measures` gives it.
+    events : DataFrame, optional
+        As :func:`suite.store.read.read_events` gives it. Without it there are no fixed targets and
+        budgets, ranking and statistics.
+    simulations, replans : DataFrame, optional
+        As :func:`suite.store.read.read_simulations` and :func:`suite.store.read.read_replans` give
+        them. Without them there are no tables of simulated runs.
+    reference : str, optional
+        The planner that the statistics compare the others with; default: kbga, or else the first.
+
+    Returns
+    -------
+    list of Table
+
+    Raises
+    ------
+    KbgaBenchError
+        If no run is of the reference.
+    """
+    check_reference(runs["variant"], reference)
+    current = newest(runs)
+    left_out = len(runs) - len(current)
+    kept, busy = fair(current), dropped_note(current)
+    driven = kept[is_simulated(kept)]
+    kept = kept[~is_simulated(kept)]
+    aligned, kept = alignment_tables(kept), without_repeats(kept)
+    moving = []
+    if simulations is not None and replans is not None:
+        moving = simulated_tables(driven, simulations, replans)
+    answers = verdict_table(Rows(kept, driven, _or_empty(first), _or_empty(replans)))
+    told = [table for table in (answers, contrast_table(kept)) if table is not None]
+    if kept.empty and moving:
+        return _paper_last([*moving, *told], busy)
+    measured = [] if events is None else measured_tables(steps_of(kept, events), reference)
+    return _paper_last(
+        [
+            *summary_tables(kept, left_out),
+            *aligned,
+            *moving,
+            *study_tables(kept, first),
+            *ablation_tables(kept, COST_NOTE),
+            *difference_tables(kept),
+            *measured,
+            *told,
+            *paper_tables(kept),
+        ],
+        busy,
+    )
+
+
+def _paper_last(tables: list[Table], left_out: str) -> list[Table]:
+    """The tables in their order, each saying which rows none of them counts."""
+    ordered = sorted(tables, key=lambda table: table.name.startswith("paper-"))
+    return [replace(table, note=joined(table.note, left_out)) for table in ordered]
+
+
+def _or_empty(frame: pd.DataFrame | None) -> pd.DataFrame:
+    return pd.DataFrame() if frame is None else frame
+
+
+def measured_tables(steps: Steps, reference: str | None = None) -> list[Table]:
+    """The ranking, fixed targets and budgets, and the statistics of runs as step functions."""
+    return [
+        *ranking_tables(steps, reference),
+        *target_tables(steps),
+        *budget_tables(steps),
+        *statistics_tables(steps, np.random.default_rng(BOOTSTRAP_SEED), reference),
+    ]

@@ -1,0 +1,260 @@
+"""The paper's pictures of static environments, from the rows of a store (Figs. 6 to 10, and 13).
+
+How KBGA comes to a path: its first population, the best of it, the best paths of several
+generations, the last one. The different routes of several runs. What a GA finds that lacks the
+specialised operators, or crossover and mutation. Metres, x right, y up.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import shapely
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from suite.paper.reported import KBGA, PLAIN_GA, WITHOUT_CROSSOVER_AND_MUTATION
+from suite.planner import Snapshot
+from suite.report.figures.scene import (
+    LINES,
+    POPULATION,
+    draw_ends,
+    draw_obstacles,
+    draw_room,
+)
+from suite.report.tables.summary import feasible
+from suite.scenes.scene import Query, Scene
+
+EVOLUTIONS = {"unstructured": 6, "maze": 7, "zigzag": 8, "double_u": 9}
+"""Scenes, and the figures of the paper that show how KBGA comes to their paths."""
+
+ROUTES = ("clustered", 10)
+WITHOUT = ("zigzag", 13)
+
+MOST_ROUTES = 4
+GENERATIONS_SHOWN = 4
+PANEL = 2.9
+"""Width of a panel, inches."""
+HEADS = 0.6
+"""Height of a panel's title and axis, inches."""
+
+Paths = Mapping[str, NDArray[np.float64]]
+
+
+def paper_pictures(
+    runs: pd.DataFrame,
+    paths: Paths,
+    snapshots: Mapping[str, Sequence[Snapshot]],
+    scenes: Sequence[tuple[Scene, Query]],
+) -> dict[str, Figure]:
+    """The pictures that these runs can answer, by the name of their file.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        Of one version of each scene, as :func:`suite.store.read.read_runs` gives them.
+    paths : mapping from key to (n, 2) float64, metres
+    snapshots : mapping from key to the generations of a run
+    scenes : sequence of (Scene, Query)
+        Of these runs.
+    """
+    figures = {}
+    for scene, query in scenes:
+        here = runs[(runs["scene"] == scene.name) & (runs["query"] == query.name)]
+        ours = feasible(here[here["variant"] == KBGA])
+        if scene.name in EVOLUTIONS:
+            shown = ours[ours["key"].isin(snapshots.keys())]
+            if len(shown):
+                row = shown.iloc[0]
+                figures[f"paper-fig-{EVOLUTIONS[scene.name]}-{scene.name}"] = plot_evolution(
+                    scene, query, snapshots[row["key"]], paths[row["key"]], row["cost"]
+                )
+        if scene.name == ROUTES[0] and len(ours) > 1:
+            best = best_of_routes(scene, ours, paths)
+            figures[f"paper-fig-{ROUTES[1]}-{scene.name}"] = plot_routes(scene, query, best)
+        if scene.name == WITHOUT[0]:
+            crippled = _best_of(here, (PLAIN_GA, WITHOUT_CROSSOVER_AND_MUTATION), paths)
+            if crippled:
+                figures[f"paper-fig-{WITHOUT[1]}-{scene.name}"] = plot_routes(
+                    scene, query, crippled
+                )
+    return figures
+
+
+def plot_evolution(
+    scene: Scene,
+    query: Query,
+    generations: Sequence[Snapshot],
+    last: NDArray[np.float64],
+    cost: float,
+) -> Figure:
+    """Draw how a population came to its path: (a) to (d), as in the paper's Fig. 6.
+
+    Parameters
+    ----------
+    scene : Scene
+    query : Query
+    generations : sequence of Snapshot
+        The first population first.
+    last : (n, 2) float64, metres
+        The path that came out.
+    cost : float
+        Its length, metres.
+    """
+    figure, grid = _panels(scene, query, 4)
+    first = generations[0]
+    grid[0].add_collection(LineCollection(first.paths, colors=POPULATION, linewidths=0.6))
+    grid[0].set_title(f"(a) first population, {len(first.paths)} paths", fontsize=9)
+    _draw(grid[1], least_inside(scene, first.paths))
+    grid[1].set_title("(b) the one of it least in obstacles", fontsize=9)
+    lines = [
+        grid[2].plot(*path.T, color=colour, linestyle=style, linewidth=1.6, label=f"{number}")[0]
+        for (number, path), (colour, style) in zip(_milestones(generations), LINES, strict=False)
+    ]
+    grid[2].set_title("(c) best paths of generations", fontsize=9)
+    if lines:
+        grid[2].legend(handles=lines, fontsize=7, framealpha=0.85, handlelength=2.6)
+    _draw(grid[3], last)
+    grid[3].set_title(f"(d) final path: {cost:.2f} m", fontsize=9)
+    return figure
+
+
+def plot_routes(
+    scene: Scene, query: Query, best: Mapping[str, tuple[NDArray[np.float64], float]]
+) -> Figure:
+    """Draw a path in each panel, under its name and cost.
+
+    Parameters
+    ----------
+    scene : Scene
+    query : Query
+    best : mapping from a name to a path (n, 2), metres, and its length
+    """
+    figure, grid = _panels(scene, query, len(best))
+    for axes, (name, (path, cost)) in zip(grid, best.items(), strict=False):
+        _draw(axes, path)
+        axes.set_title(f"{name}:\n{cost:.2f} m", fontsize=9)
+    return figure
+
+
+def best_of_routes(
+    scene: Scene, runs: pd.DataFrame, paths: Paths, most: int = MOST_ROUTES
+) -> dict[str, tuple[NDArray[np.float64], float]]:
+    """The shortest path of each route that runs took, the shortest route first.
+
+    Two paths are of one route if they pass every obstacle on the same side.
+
+    Parameters
+    ----------
+    scene : Scene
+    runs : DataFrame
+        Feasible ones.
+    paths : mapping from key to (n, 2) float64, metres
+    most : int
+        Routes.
+
+    Returns
+    -------
+    dict
+        From "(a), 17 of 20 runs" to path and length.
+    """
+    places = np.array([o.polygon.representative_point().coords[0] for o in scene.obstacles])
+    routes: dict[tuple[int, ...], list[tuple[float, str]]] = {}
+    for key, cost in zip(runs["key"], runs["cost"], strict=True):
+        routes.setdefault(sides(paths[key], places), []).append((float(cost), str(key)))
+    ordered = sorted(routes.values(), key=min)[:most]
+    return {
+        f"({letter}), {len(members)} of {len(runs)} runs": (paths[min(members)[1]], min(members)[0])
+        for letter, members in zip("abcdefgh", ordered, strict=False)
+    }
+
+
+def sides(path: NDArray[np.float64], places: NDArray[np.float64]) -> tuple[int, ...]:
+    """How often a path crosses the ray upwards from each place, to the right less to the left.
+
+    Paths with the same ends that agree in it enclose none of the places between them.
+
+    Parameters
+    ----------
+    path : (n, 2) float64, metres
+    places : (m, 2) float64, metres
+
+    Examples
+    --------
+    >>> above, below = np.array([[0, 0], [2, 5], [4, 0]]), np.array([[0, 0], [4, 0]])
+    >>> place = np.array([[2, 1]])
+    >>> sides(above, place), sides(below, place)
+    ((1,), (0,))
+    """
+    (x, y), (u, v) = path[:-1].T[:, :, None], path[1:].T[:, :, None]
+    right = (x <= places[:, 0]) & (places[:, 0] < u)
+    left = (u <= places[:, 0]) & (places[:, 0] < x)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        height = y + (places[:, 0] - x) / (u - x) * (v - y)
+    is_above = height > places[:, 1]
+    crossed = (right & is_above).sum(axis=0) - (left & is_above).sum(axis=0)
+    return tuple(crossed.tolist())
+
+
+def least_inside(scene: Scene, paths: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """The path of which the least is in obstacles; of several the shortest."""
+    lines = [shapely.LineString(path) for path in paths]
+    solid = shapely.union_all([o.polygon for o in scene.obstacles])
+    inside = shapely.length(shapely.intersection(lines, solid))
+    lengths = shapely.length(lines)
+    return paths[int(np.lexsort([lengths, inside.round(9)])[0])]
+
+
+def _milestones(generations: Sequence[Snapshot]) -> list[tuple[int, NDArray[np.float64]]]:
+    """Some generations in which the best path became another one: the first, the last, between."""
+    found: list[tuple[int, NDArray[np.float64]]] = []
+    for snapshot in generations:
+        if snapshot.best is None:
+            continue
+        if not found or not np.array_equal(found[-1][1], snapshot.best):
+            found.append((snapshot.generation, snapshot.best))
+    some = np.unique(np.linspace(0, len(found) - 1, min(GENERATIONS_SHOWN, len(found))).round())
+    return [found[int(i)] for i in some]
+
+
+def _best_of(
+    runs: pd.DataFrame, variants: Sequence[str], paths: Paths
+) -> dict[str, tuple[NDArray[np.float64], float]]:
+    best = {}
+    for variant in variants:
+        solved = feasible(runs[runs["variant"] == variant])
+        if len(solved):
+            row = solved.sort_values("cost", kind="stable").iloc[0]
+            total = int((runs["variant"] == variant).sum())
+            name = f"{variant.removeprefix('kbga-')}, best of {total}"
+            best[name] = (paths[row["key"]], float(row["cost"]))
+    return best
+
+
+def _panels(scene: Scene, query: Query, count: int) -> tuple[Figure, list[Axes]]:
+    xmin, ymin, xmax, ymax = scene.bounds
+    columns = min(count, 2)
+    rows = -(-count // columns)
+    height = PANEL * min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0) + HEADS
+    figure, grid = plt.subplots(
+        rows, columns, figsize=(PANEL * columns + 0.4, height * rows), layout="constrained",
+        sharex=True, sharey=True, squeeze=False,
+    )  # fmt: skip
+    for axes in grid.flat[count:]:
+        axes.set_visible(False)
+    for axes in grid.flat[:count]:
+        draw_room(axes, scene)
+        draw_obstacles(axes, scene, 0.5)
+        draw_ends(axes, query, 0.6)
+        axes.tick_params(labelsize=7)
+        axes.set_xlabel("x (m)", fontsize=8)
+        axes.set_ylabel("y (m)", fontsize=8)
+        axes.label_outer(remove_inner_ticks=True)
+    return figure, list(grid.flat[:count])
+
+
+def _draw(axes: Axes, path: NDArray[np.float64]) -> None:
+    axes.plot(*np.asarray(path).T, color=LINES[0][0], linewidth=1.8, marker=".", markersize=4)

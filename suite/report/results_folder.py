@@ -1,0 +1,276 @@
+"""A results folder, made from a store: tables, rows, figures, and the manifest."""
+
+import hashlib
+import json
+import re
+from collections.abc import Collection, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from suite.errors import KbgaBenchError, StoreError
+from suite.report.all_tables import all_tables
+from suite.report.export.files import export_rows, made_folder
+from suite.report.figures.comparison import comparison_figures
+from suite.report.figures.convergence import convergence_figures
+from suite.report.figures.overview import overview_figures
+from suite.report.figures.ranks import rank_figures
+from suite.report.figures.replanning import plot_replanning
+from suite.report.figures.runtime import runtime_figures
+from suite.report.figures.scene import LINES, plot_scene_results, save
+from suite.report.figures.simulation import plot_snapshots
+from suite.report.figures.studies import study_figures
+from suite.report.paper.pictures import paper_pictures
+from suite.report.rows import newest
+from suite.report.statistics.anytime import Steps, steps_of
+from suite.report.statistics.clock import fair
+from suite.report.table import SUFFIX, Format, Table, render
+from suite.report.tables.alignment import without_repeats
+from suite.report.tables.simulated import is_simulated
+from suite.report.tables.summary import feasible
+from suite.scenes.catalogue import load_scene
+from suite.scenes.scene import Query, Scene, scene_fingerprint
+from suite.simulation.record import from_data
+from suite.store.read import (
+    read_events,
+    read_first_measures,
+    read_paths,
+    read_replans,
+    read_runs,
+    read_sessions,
+    read_simulation,
+    read_simulations,
+    read_snapshots,
+)
+
+MANIFEST = "manifest.json"
+
+COMPARISONS, PAPER_PICTURES = "comparisons", "paper-pictures"
+"""Names of the pictures that can be left out: how planners compare, and what the paper shows."""
+
+REPLANNING = "replanning"
+"""Name of the figure of simulated runs."""
+
+
+def write_results(
+    store: Path, directory: Path, *, leave_out: Collection[str] = (), figures: str = "png"
+) -> list[Path]:
+    """Make a results folder from a store; the same store gives the same bytes.
+
+    Tables of the rows behind another table are CSV only, for nobody reads hundreds of lines. There
+    are figures of each study and of how the planners compare, and one of the best paths for each
+    scene, where a reader can still tell them apart.
+
+    Parameters
+    ----------
+    store : Path
+    directory : Path
+        Made if it is missing; files of the same names are replaced.
+    leave_out : collection of str
+        Rows that are not written, for they are too many (``events``, ``traces``, ``paths``), and
+        pictures (``comparisons``: of how the planners compare; ``paper-pictures``: like those of
+        the paper). The manifest names them.
+    figures : str
+        ``png``, or the vectors ``pdf`` and ``svg``.
+
+    Returns
+    -------
+    list of Path
+        The files.
+
+    Raises
+    ------
+    KbgaBenchError
+        If the store holds no runs, a scene has changed since, or a file can't be written.
+    """
+    runs = read_runs(store)
+    if runs.empty:
+        raise StoreError(f"{store}: it holds no runs yet. `kbga-bench run` fills it.")
+    current = newest(runs)
+    scenes = _scenes(current)
+    folder = made_folder(directory)
+    tables = read_tables(store)
+    files = write_tables([t for t in tables if not t.detail], folder, Format.MARKDOWN)
+    files += write_tables(tables, folder, Format.CSV)
+    files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
+    shown = fair(without_repeats(current))
+    for name, figure in _figures(store, shown, scenes, leave_out):
+        file = folder / f"{name}.{figures}"
+        save(figure, file)
+        files.append(file)
+    manifest = folder / MANIFEST
+    made = _manifest(store, runs, folder, files, leave_out)
+    _write_text(manifest, json.dumps(made, indent=2) + "\n")
+    return [*files, manifest]
+
+
+def read_tables(store: Path, reference: str | None = None) -> list[Table]:
+    """All tables of a store.
+
+    Parameters
+    ----------
+    store : Path
+    reference : str, optional
+        The planner that the statistics compare the others with; default: kbga, or else the first.
+
+    Raises
+    ------
+    StoreError
+        If it can't be read.
+    KbgaBenchError
+        If no run is of the reference.
+    """
+    return all_tables(
+        read_runs(store),
+        read_first_measures(store),
+        read_events(store),
+        simulations=read_simulations(store),
+        replans=read_replans(store),
+        reference=reference,
+    )
+
+
+def write_tables(tables: Sequence[Table], directory: Path, style: Format) -> list[Path]:
+    """Write each table to a file of its name.
+
+    Raises
+    ------
+    KbgaBenchError
+        If a file can't be written.
+    """
+    folder = made_folder(directory)
+    files = []
+    for table in tables:
+        file = folder / f"{table.name}{SUFFIX[style]}"
+        _write_text(file, render(table, style))
+        files.append(file)
+    return files
+
+
+def _scenes(runs: pd.DataFrame) -> list[tuple[Scene, Query]]:
+    """Scenes and queries of the runs, as they were when these were made."""
+    pairs = []
+    wanted = runs[["scene_source", "query", "scene_hash"]].drop_duplicates()
+    for source, name, fingerprint in wanted.itertuples(index=False):
+        scene = load_scene(source)
+        query = scene.query(name)
+        if scene_fingerprint(scene, query) != fingerprint:
+            raise StoreError(
+                f"{source}: the scene has changed since its rows were made. Run them again into a "
+                "new store, or put the scene back."
+            )
+        pairs.append((scene, query))
+    return pairs
+
+
+def _figures(
+    store: Path,
+    current: pd.DataFrame,
+    scenes: list[tuple[Scene, Query]],
+    leave_out: Collection[str],
+) -> Iterator[tuple[str, Figure]]:
+    """The figures that are wanted, each with the name of its file."""
+    planned, driven = current[~is_simulated(current)], current[is_simulated(current)]
+    paths = read_paths(store)
+    yield from study_figures(planned).items()
+    if COMPARISONS not in leave_out:
+        yield from _comparisons(steps_of(planned, read_events(store)))
+    if PAPER_PICTURES not in leave_out:
+        yield from paper_pictures(planned, paths, read_snapshots(store), scenes).items()
+    yield from _scene_figures(planned, paths, scenes)
+    if not driven.empty:
+        yield REPLANNING, plot_replanning(driven, read_replans(store))
+        yield from _snapshot_sheets(driven, store)
+
+
+def _comparisons(steps: Steps) -> Iterator[tuple[str, Figure]]:
+    """How the planners compare."""
+    yield from overview_figures(steps).items()
+    yield from convergence_figures(steps).items()
+    yield from runtime_figures(steps).items()
+    yield from comparison_figures(steps).items()
+    yield from rank_figures(steps).items()
+
+
+def _scene_figures(
+    runs: pd.DataFrame, paths: dict[str, Any], scenes: list[tuple[Scene, Query]]
+) -> Iterator[tuple[str, Figure]]:
+    """The best paths of each scene, where a reader can still tell them apart."""
+    for scene, query in scenes:
+        here = runs[(runs["scene"] == scene.name) & (runs["query"] == query.name)]
+        if here.empty or here["variant"].nunique() > len(LINES):
+            continue
+        best, labels = _best_paths(here, paths)
+        several = len(scene.queries) > 1
+        name = f"{scene.name}-{query.name}" if several else scene.name
+        yield name, plot_scene_results(scene, query, best, labels=labels)
+
+
+def _snapshot_sheets(runs: pd.DataFrame, store: Path) -> Iterator[tuple[str, Figure]]:
+    """A sheet of the first run of the first planner in each world."""
+    for (source, world), group in runs.groupby(["scene_source", "world"], sort=False):
+        data = read_simulation(store, group["key"].iloc[0])
+        figure = plot_snapshots(from_data(load_scene(str(source)), data))
+        figure.suptitle(f"{data['scene']}, {world}: {group['variant'].iloc[0]}", fontsize=11)
+        yield f"{data['scene']}-{_slug(str(world))}", figure
+
+
+def _slug(text: str) -> str:
+    """A text as a part of a file's name."""
+    return "-".join(re.findall(r"[a-z0-9]+", text.lower()))
+
+
+def _best_paths(
+    runs: pd.DataFrame, paths: dict[str, Any]
+) -> tuple[dict[str, NDArray[np.float64] | None], dict[str, str]]:
+    """The cheapest path of each planner in the runs of one query, and its line in the legend."""
+    best: dict[str, NDArray[np.float64] | None] = {}
+    labels = {}
+    for variant, group in runs.groupby("variant", sort=False):
+        name, solved = str(variant), feasible(group)
+        share = f"{len(solved)} of {len(group)} runs"
+        if len(solved):
+            row = solved.sort_values("cost", kind="stable").iloc[0]
+            best[name] = paths[row["key"]]
+            labels[name] = f"{name}: {row['cost']:.2f} m ({share})"
+        else:
+            best[name] = None
+            labels[name] = f"{name}: no path ({share})"
+    return best, labels
+
+
+def _manifest(
+    store: Path,
+    runs: pd.DataFrame,
+    folder: Path,
+    files: Sequence[Path],
+    leave_out: Collection[str],
+) -> dict[str, Any]:
+    sessions = read_sessions(store)
+    matrices = list(dict.fromkeys(session["matrix"] for session in sessions))
+    commands = [f"kbga-bench run {matrix} --store STORE" for matrix in matrices]
+    options = "".join(f" --leave-out {kind}" for kind in sorted(leave_out))
+    return {
+        "made_by": [*commands, f"kbga-bench results STORE {folder.name}{options}"],
+        "runs": len(runs),
+        "by_status": {str(k): int(v) for k, v in runs["status"].value_counts().items()},
+        "planners": list(runs["variant"].unique()),
+        "scenes": list(runs["scene"].unique()),
+        "seeds": int(runs["seed"].nunique()),
+        "sessions": sessions,
+        "sha256": {
+            str(file.relative_to(folder)): hashlib.sha256(file.read_bytes()).hexdigest()
+            for file in files
+        },
+    }
+
+
+def _write_text(file: Path, text: str) -> None:
+    try:
+        file.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise KbgaBenchError(f"{file}: can't be written ({error.strerror}).") from error

@@ -1,0 +1,1 @@
+"""What rows say, as numbers: curves, tests, intervals, which rows may be compared."""

@@ -1,0 +1,278 @@
+"""Scene files: a planar GeoJSON FeatureCollection, read and written.
+
+The format
+----------
+Coordinates are metres in the plane, x right, y up; no projection applies. Each feature has
+``properties.role``:
+
+``workspace``
+    One Polygon: where the robot may be. A hole in it is an obstacle.
+``obstacle``
+    Polygon or MultiPolygon, convex or concave, with holes if need be; they may touch and overlap.
+    ``properties.name`` is optional and unique. Without the properties below it is static; with any
+    of them it is part of a dynamic scene, and the polygon is where it is drawn, not where it is.
+``start``, ``goal``
+    A Point each. Several pairs make several queries: ``properties.query`` names the pair
+    (default ``main``).
+
+Properties of an obstacle that changes over time (seconds from the start of a run, metres):
+
+``motion``
+    ``{"waypoints": [[t, dx, dy], ...]}``: it is moved by (dx, dy) from where it is drawn at the
+    time t, along straight lines at constant speed between the waypoints, and rests before the first
+    and after the last. ``{"velocity": [vx, vy], "start": t0, "stop": t1}`` is short for a line
+    (``start`` is 0 if left out).
+``detection``
+    ``{"range": r}``: it is there, but unknown until the robot is within r metres of its edge at an
+    update. ``{}`` takes the sensing range of the robot.
+``removal``
+    ``{"time": t}``, or ``{"place": [x, y], "distance": d}``: it vanishes at the time, or as soon as
+    the robot is within d metres of the place; of both, at what comes first.
+``appears``
+    A time, before which it is not there.
+
+Members of the collection that the suite reads: ``name`` (default: the file's name) and
+``properties``, an object of which it knows ``description``, ``figure``, ``paper_best``,
+``reconstruction`` and ``optimum`` (from query name to exact optimal length, metres); of a dynamic
+scene also ``world``, the default settings of its simulation (see
+:class:`suite.simulation.settings.WorldSettings`), and ``gates``, from a name to a segment
+``[[x, y], [x, y]]`` across an opening, so that a run can say which one the robot passed. Others
+are kept. Any JSON, GIS or shapely tool reads the file.
+"""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from shapely.geometry import Polygon, mapping
+
+from suite.errors import SceneError
+from suite.geometry.tolerances import LARGEST
+from suite.scenes.dynamics import as_properties, parse_dynamics
+from suite.scenes.scene import DEFAULT_QUERY, Obstacle, Scene, make_scene
+
+ROLES = ("workspace", "obstacle", "start", "goal")
+SUFFIXES = (".geojson", ".json")
+
+
+def read_scene(path: Path, *, inflate: float = 0.0) -> Scene:
+    """Read a scene file.
+
+    Parameters
+    ----------
+    path : Path
+        A GeoJSON file in the format of this module.
+    inflate : float
+        Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        If the file can't be read or its scene can't be used. The message says where and why.
+    """
+    where = path.name
+    document = _load(path)
+    if document.get("type") != "FeatureCollection":
+        raise SceneError(
+            f"{where}: its type is {document.get('type')!r}, not 'FeatureCollection'. "
+            "Put workspace, obstacles, start and goal into one FeatureCollection."
+        )
+    features = document.get("features")
+    if not isinstance(features, list):
+        raise SceneError(f"{where}: 'features' is missing or no list.")
+    workspaces: list[Polygon] = []
+    obstacles: list[Obstacle] = []
+    ends: dict[str, dict[str, Any]] = {"start": {}, "goal": {}}
+    for number, feature in enumerate(features, 1):
+        role, properties, geometry = _feature(where, number, feature)
+        if role == "workspace":
+            workspaces += _polygons(where, f"feature {number} (workspace)", geometry)
+        elif role == "obstacle":
+            obstacles += _obstacle(where, len(obstacles) + 1, properties, geometry)
+        else:
+            query = str(properties.get("query", DEFAULT_QUERY))
+            if query in ends[role]:
+                raise SceneError(
+                    f"{where}, feature {number}: query '{query}' has two points of role '{role}'. "
+                    "Name the queries apart with properties.query."
+                )
+            ends[role][query] = _point(where, number, role, geometry)
+    if len(workspaces) != 1:
+        raise SceneError(
+            f"{where}: {len(workspaces)} workspaces. Give one Polygon of role 'workspace'."
+        )
+    own = document.get("properties")
+    return make_scene(
+        str(document.get("name", path.stem)),
+        workspaces[0],
+        obstacles,
+        _paired(where, ends["start"], ends["goal"]),
+        properties=own if isinstance(own, dict) else {},
+        path=path,
+        inflate=inflate,
+    )
+
+
+def _load(path: Path) -> dict[str, Any]:
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise SceneError(f"{path}: can't be read ({error.strerror}).") from error
+    except UnicodeDecodeError as error:
+        raise SceneError(f"{path.name}: is not UTF-8 text (byte {error.start}).") from error
+    try:
+        document = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise SceneError(
+            f"{path.name}, line {error.lineno}, column {error.colno}: not JSON ({error.msg})."
+        ) from error
+    except (ValueError, RecursionError) as error:  # numbers too long, or nested too deep
+        raise SceneError(f"{path.name}: can't be read as JSON ({error}).") from error
+    if not isinstance(document, dict):
+        raise SceneError(f"{path.name}: holds no JSON object. A scene is a FeatureCollection.")
+    return document
+
+
+def _feature(where: str, number: int, feature: Any) -> tuple[str, Mapping[str, Any], Any]:
+    if not isinstance(feature, dict) or feature.get("type") != "Feature":
+        raise SceneError(f"{where}, feature {number}: is no GeoJSON Feature.")
+    properties = feature.get("properties")
+    properties = properties if isinstance(properties, dict) else {}
+    role = properties.get("role")
+    if role not in ROLES:
+        problem = "has no role" if role is None else f"has the unknown role {role!r}"
+        raise SceneError(
+            f"{where}, feature {number}: {problem}. "
+            f"Set properties.role to one of {', '.join(ROLES)}."
+        )
+    return role, properties, feature.get("geometry")
+
+
+def _obstacle(
+    where: str, number: int, properties: Mapping[str, Any], geometry: Any
+) -> list[Obstacle]:
+    name = str(properties.get("name", f"obstacle {number}"))
+    polygons = _polygons(where, name, geometry)
+    try:
+        dynamics = parse_dynamics(properties)
+    except SceneError as error:
+        raise SceneError(f"{where}, {name}: {error}") from error
+    if len(polygons) == 1:
+        return [Obstacle(name, polygons[0], dynamics)]
+    return [Obstacle(f"{name}, polygon {i}", p, dynamics) for i, p in enumerate(polygons, 1)]
+
+
+def _polygons(where: str, what: str, geometry: Any) -> list[Polygon]:
+    kind = geometry.get("type") if isinstance(geometry, dict) else None
+    if kind not in ("Polygon", "MultiPolygon"):
+        raise SceneError(f"{where}, {what}: its geometry is {kind!r}; give a Polygon.")
+    members = geometry.get("coordinates")
+    members = [members] if kind == "Polygon" else members
+    if not isinstance(members, list) or not members:
+        raise SceneError(f"{where}, {what}: its coordinates are missing.")
+    return [_polygon(where, what, rings) for rings in members]
+
+
+def _polygon(where: str, what: str, rings: Any) -> Polygon:
+    if not isinstance(rings, list) or not rings:
+        raise SceneError(f"{where}, {what}: its coordinates are missing.")
+    closed = [_ring(where, what, ring) for ring in rings]
+    return Polygon(closed[0], closed[1:])
+
+
+def _ring(where: str, what: str, ring: Any) -> list[tuple[float, float]]:
+    if not isinstance(ring, list):
+        raise SceneError(f"{where}, {what}: a ring is no list of [x, y].")
+    points = [_xy(where, f"{what}, vertex {i}", point) for i, point in enumerate(ring, 1)]
+    if len(set(points)) < 3:
+        raise SceneError(
+            f"{where}, {what}: only {len(set(points))} different vertices. A ring needs three."
+        )
+    return points
+
+
+def _xy(where: str, what: str, point: Any) -> tuple[float, float]:
+    numbers = point[:2] if isinstance(point, list) else []
+    if len(numbers) != 2 or any(
+        isinstance(v, bool) or not isinstance(v, int | float) for v in numbers
+    ):
+        raise SceneError(f"{where}, {what}: {point!r} is not [x, y].")
+    x, y = numbers
+    if not (abs(x) <= LARGEST and abs(y) <= LARGEST):  # so written, NaN is refused too
+        raise SceneError(
+            f"{where}, {what}: {point!s:.60}. "
+            f"Coordinates must be finite numbers, in metres, up to {LARGEST:g}."
+        )
+    return float(x) + 0.0, float(y) + 0.0
+
+
+def _point(where: str, number: int, role: str, geometry: Any) -> tuple[float, float]:
+    kind = geometry.get("type") if isinstance(geometry, dict) else None
+    if kind != "Point":
+        raise SceneError(
+            f"{where}, feature {number} ({role}): its geometry is {kind!r}; give a Point."
+        )
+    return _xy(where, f"feature {number} ({role})", geometry.get("coordinates"))
+
+
+def _paired(
+    where: str, starts: Mapping[str, Any], goals: Mapping[str, Any]
+) -> dict[str, tuple[Any, Any]]:
+    for name in (*starts, *goals):
+        for role, points in (("start", starts), ("goal", goals)):
+            if name not in points:
+                raise SceneError(
+                    f"{where}: query '{name}' has no {role}. Add a Point of that role."
+                )
+    return {name: (starts[name], goals[name]) for name in starts}
+
+
+def check_scene_file(path: Path) -> None:
+    """Refuse a file that a scene can't be written to, before any is made for it.
+
+    Raises
+    ------
+    SceneError
+        If its suffix is not that of a scene file, or its folder is missing.
+    """
+    if path.suffix.lower() not in SUFFIXES:
+        raise SceneError(f"{path}: scene files are {', '.join(SUFFIXES)}. Name such a file.")
+    if not path.parent.is_dir():
+        raise SceneError(f"{path}: there is no folder {path.parent}. Make it first.")
+
+
+def write_scene(scene: Scene, path: Path) -> None:
+    """Write a scene as GeoJSON, one feature a line, in the format of this module.
+
+    Raises
+    ------
+    SceneError
+        If the file can't be written.
+    """
+    features = [_as_feature({"role": "workspace"}, mapping(scene.workspace))]
+    features += [
+        _as_feature(
+            {"role": "obstacle", "name": o.name, **as_properties(o.dynamics)}, mapping(o.polygon)
+        )
+        for o in scene.obstacles
+    ]
+    for query in scene.queries:
+        for role, point in (("start", query.start), ("goal", query.goal)):
+            geometry = {"type": "Point", "coordinates": point.tolist()}
+            features.append(_as_feature({"role": role, "query": query.name}, geometry))
+    lines = ",\n".join(json.dumps(f) for f in features)
+    head = json.dumps({"name": scene.name, "properties": dict(scene.properties)}, indent=1)
+    text = f'{head[:-2]},\n "type": "FeatureCollection",\n "features": [\n{lines}\n]}}\n'
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise SceneError(f"{path}: can't be written ({error.strerror}).") from error
+
+
+def _as_feature(properties: Mapping[str, Any], geometry: Mapping[str, Any]) -> dict[str, Any]:
+    return {"type": "Feature", "properties": dict(properties), "geometry": dict(geometry)}

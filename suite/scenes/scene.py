@@ -1,0 +1,497 @@
+"""Scenes and queries: where the robot may go, what is in its way, and from where to where.
+
+Units are metres; x points right, y up. The robot is a point: its size and safety margin are
+already in the obstacles (paper section II-A), or are added by ``inflate``.
+"""
+
+import hashlib
+import json
+import warnings
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import pairwise
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+from shapely.affinity import translate
+from shapely.geometry import LinearRing, LineString, Polygon
+from shapely.validation import explain_validity
+
+from suite.errors import SceneError
+from suite.geometry.arrangement import Arrangement, arrange
+from suite.geometry.kernels import PARTS, ObstacleArrays
+from suite.geometry.tolerances import GRID, GRID_DECIMALS, LARGEST
+from suite.scenes.dynamics import Dynamics, as_text
+
+DEFAULT_QUERY = "main"
+
+
+class SceneWarning(UserWarning):
+    """A scene was mended on loading, in a way that its author may want to know."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Query:
+    """One planning problem in a scene.
+
+    name : str, unique in its scene.
+    start, goal : (2,) float64, metres, read-only.
+    """
+
+    name: str
+    start: NDArray[np.float64]
+    goal: NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Obstacle:
+    """An obstacle as its author drew it: a polygon, convex or concave, maybe with holes.
+
+    dynamics : how it changes over time; None if it is static.
+    """
+
+    name: str
+    polygon: Polygon
+    dynamics: Dynamics | None = None
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is ever anywhere else than where it is drawn."""
+        return self.dynamics is not None and self.dynamics.motion is not None
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A workspace, its obstacles and its queries. Built by :func:`make_scene`, then immutable.
+
+    Whoever asks for its geometry sees obstacles as they are drawn: all known, none moving. What a
+    dynamic scene is like at a time, :func:`scene_at` says.
+
+    name : str
+    workspace : Polygon without holes, metres.
+    obstacles : tuple of Obstacle, inside the workspace, but for those that move, whose drawing may
+        stick out; they may touch and overlap.
+    queries : tuple of Query, at least one.
+    properties : read-only mapping, what the scene file says about itself.
+    path : the file that the scene came from, or None.
+    """
+
+    name: str
+    workspace: Polygon
+    obstacles: tuple[Obstacle, ...]
+    queries: tuple[Query, ...]
+    properties: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    path: Path | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the arrangement: its arrays would come back writable, another type to numba."""
+        state = {k: v for k, v in self.__dict__.items() if k != "arrangement"}
+        return state | {"properties": dict(self.properties)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, properties=MappingProxyType(state["properties"]))
+        for query in self.queries:  # a pickle forgets that arrays are read-only
+            query.start.setflags(write=False)
+            query.goal.setflags(write=False)
+
+    @cached_property
+    def arrangement(self) -> Arrangement:
+        """The plane divided into free space, obstacle groups and the frame."""
+        return arrange(
+            self.workspace,
+            [p for o in self.obstacles for p in _inside(self.workspace, o.polygon, o.moves)],
+        )
+
+    @property
+    def arrays(self) -> ObstacleArrays:
+        """The obstacles as convex parts, for the kernels."""
+        return self.arrangement.arrays
+
+    @cached_property
+    def hash(self) -> str:
+        """Hash of workspace and obstacles: what a result depends on, whatever the name says."""
+        content = [self.workspace.wkb_hex, *(o.polygon.wkb_hex for o in self.obstacles)]
+        dynamics = [(i, o.dynamics) for i, o in enumerate(self.obstacles)]
+        content += [f"{i} {as_text(changes)}" for i, changes in dynamics if changes is not None]
+        return hashlib.sha256("\n".join(content).encode()).hexdigest()[:16]
+
+    @property
+    def is_dynamic(self) -> bool:
+        """Whether any of its obstacles is not static."""
+        return any(o.dynamics is not None for o in self.obstacles)
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """xmin, ymin, xmax, ymax of the workspace, metres."""
+        return self.workspace.bounds
+
+    @property
+    def vertex_count(self) -> int:
+        """Number of vertices that the obstacles were drawn with."""
+        return sum(_vertex_count(o.polygon) for o in self.obstacles)
+
+    @property
+    def part_count(self) -> int:
+        """Number of convex parts of all obstacles (the frame does not count)."""
+        return int(self.arrays.groups[:-1, PARTS].sum())
+
+    def query(self, name: str | None = None) -> Query:
+        """The query of that name, or the first one.
+
+        Raises
+        ------
+        SceneError
+            If there is no query of that name.
+        """
+        if name is None:
+            return self.queries[0]
+        for query in self.queries:
+            if query.name == name:
+                return query
+        names = ", ".join(q.name for q in self.queries)
+        raise SceneError(f"{self.name}: no query '{name}'. It has: {names}.")
+
+    def stored_optimum(self, query: Query) -> float | None:
+        """The exact optimum that the scene file states for a query, metres; None if it has none."""
+        optima = self.properties.get("optimum", {})
+        value = optima.get(query.name) if isinstance(optima, Mapping) else None
+        return None if value is None else float(value)
+
+
+def _vertex_count(polygon: Polygon) -> int:
+    return int(shapely.get_num_coordinates(polygon)) - 1 - len(polygon.interiors)
+
+
+def make_scene(
+    name: str,
+    workspace: Polygon | ArrayLike,
+    obstacles: Iterable[Polygon | Obstacle | ArrayLike],
+    queries: Mapping[str, tuple[ArrayLike, ArrayLike]] | tuple[ArrayLike, ArrayLike],
+    *,
+    properties: Mapping[str, Any] | None = None,
+    path: Path | None = None,
+    inflate: float = 0.0,
+) -> Scene:
+    """Check and normalise the pieces of a scene, and put them together.
+
+    Parameters
+    ----------
+    name : str
+        Of the scene; part of the random stream of its runs.
+    workspace : Polygon, or its vertices (n, 2)
+        Where the robot may be, metres. Its holes become obstacles.
+    obstacles : iterable of Polygon, Obstacle, or vertices (n, 2)
+        What sticks out of the workspace is cut off, with a :class:`SceneWarning`. Vertices are
+        listed in order, either way round; the last is joined to the first.
+    queries : mapping from name to (start, goal), or one such pair
+        Points (2,), metres. A pair alone is the query ``main``.
+    properties : mapping, optional
+        Kept with the scene as they are, but for the optima, which hold for a robot of no size.
+    path : Path, optional
+        The file that the pieces came from; named in errors.
+    inflate : float
+        Radius of the robot, metres: obstacles grow by it and the workspace shrinks by it.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    SceneError
+        If a polygon is not valid, or a start or goal is not in free space at time 0.
+
+    Examples
+    --------
+    >>> scene = make_scene(
+    ...     "one box", shapely.box(0, 0, 10, 10), [shapely.box(4, 0, 6, 8)],
+    ...     {"main": ((1, 1), (9, 1))},
+    ... )
+    >>> scene.part_count, scene.query().goal.tolist()
+    (1, [9.0, 1.0])
+
+    The same from arrays of vertices:
+
+    >>> room = np.array([(0, 0), (10, 0), (10, 10), (0, 10)])
+    >>> wall = np.array([(4, 0), (6, 0), (6, 8), (4, 8)])
+    >>> make_scene("one box", room, [wall], ((1, 1), (9, 1))).query().goal.tolist()
+    [9.0, 1.0]
+    """
+    where = path.name if path is not None else name
+    room = _as_polygon(where, "workspace", workspace)
+    named = [
+        Obstacle(o.name, _as_polygon(where, o.name, o.polygon), o.dynamics)
+        if isinstance(o, Obstacle)
+        else Obstacle(f"obstacle {i}", _as_polygon(where, f"obstacle {i}", o))
+        for i, o in enumerate(obstacles, 1)
+    ]
+    _check_polygon(where, "workspace", room)
+    for obstacle in named:
+        _check_polygon(where, obstacle.name, obstacle.polygon)
+    _check_unique(where, "obstacles", [o.name for o in named])
+    if not np.isfinite(inflate) or inflate < 0.0:
+        raise SceneError(f"{where}: inflate is {inflate}. Give a radius of 0 m or more.")
+    room, named = _normalise(where, room, named, inflate)
+    ends = queries if isinstance(queries, Mapping) else {DEFAULT_QUERY: queries}
+    if not ends:
+        raise SceneError(
+            f"{where}: no start. Add a feature of role 'start' and one of role 'goal'."
+        )
+    scene = Scene(
+        name=name,
+        workspace=room,
+        obstacles=tuple(named),
+        queries=tuple(_as_query(where, key, pair) for key, pair in ends.items()),
+        properties=MappingProxyType(_still_true(properties or {}, inflate)),
+        path=path,
+    )
+    # What comes upon an end later is what dynamic scenes are for: a hit, or a goal to wait for.
+    first = scene_at(scene, 0.0) if scene.is_dynamic else scene
+    for query in scene.queries:
+        _check_free(where, first, f"start of query '{query.name}'", query.start)
+        _check_free(where, first, f"goal of query '{query.name}'", query.goal)
+    return scene
+
+
+def _still_true(properties: Mapping[str, Any], inflate: float) -> dict[str, Any]:
+    """The properties without what holds for a point only, if the robot is none."""
+    return {k: v for k, v in properties.items() if inflate == 0.0 or k != "optimum"}
+
+
+def _check_unique(where: str, what: str, names: Sequence[str]) -> None:
+    for name in names:
+        if names.count(name) > 1:
+            raise SceneError(
+                f"{where}: two {what} are named '{name}'. Give each a name of its own."
+            )
+
+
+def _as_polygon(where: str, what: str, shape: Polygon | ArrayLike) -> Polygon:
+    """Make a polygon of vertices (n, 2); a polygon stays itself."""
+    if isinstance(shape, Polygon):
+        return shape
+    mend = "Give a shapely Polygon, or its vertices as an array (n, 2)."
+    if isinstance(shape, shapely.Geometry):
+        raise SceneError(f"{where}, {what}: it is a {type(shape).__name__}. {mend}")
+    try:
+        xy = np.array(shape, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise SceneError(f"{where}, {what}: it is no array of numbers. {mend}") from error
+    if xy.ndim != 2 or xy.shape[1] != 2:
+        raise SceneError(f"{where}, {what}: its shape is {xy.shape}. {mend}")
+    # Before shapely sees them: it refuses short rings, and warns of NaN, in words of its own.
+    _check_coordinates(where, what, xy)
+    _check_ring(where, what, xy)
+    return Polygon(xy)
+
+
+def _check_coordinates(where: str, what: str, xy: NDArray[np.float64]) -> None:
+    bad = np.flatnonzero(~(np.abs(xy) <= LARGEST).all(axis=1))  # so written, NaN is bad too
+    if bad.size:
+        x, y = xy[bad[0]]
+        raise SceneError(
+            f"{where}, {what}: vertex {bad[0] + 1} is ({x}, {y}). "
+            f"Coordinates must be finite numbers, in metres, up to {LARGEST:g}."
+        )
+
+
+def _check_ring(where: str, what: str, xy: NDArray[np.float64]) -> None:
+    corners = np.unique(xy, axis=0)
+    if len(corners) < 3:
+        raise SceneError(
+            f"{where}, {what}: only {len(corners)} different vertices. A ring needs three."
+        )
+
+
+def _check_polygon(where: str, what: str, polygon: Polygon) -> None:
+    """Refuse a polygon that is not one, and say where it goes wrong."""
+    _check_coordinates(where, what, shapely.get_coordinates(polygon))
+    for ring in (polygon.exterior, *polygon.interiors):
+        _check_ring(where, what, shapely.get_coordinates(ring))
+        crossing = _first_crossing(ring)
+        if crossing is not None:
+            i, j, x, y = crossing
+            raise SceneError(
+                f"{where}, {what}: edges {i} and {j} cross at ({x:g}, {y:g}). "
+                "List its vertices in order, or split it in two."
+            )
+    if polygon.area == 0.0:
+        raise SceneError(f"{where}, {what}: its area is zero. Give it some width, or leave it out.")
+    if not polygon.is_valid:
+        raise SceneError(
+            f"{where}, {what}: {explain_validity(polygon)}. Its rings must not cross, overlap "
+            "or touch along a line; split it in several polygons."
+        )
+    if shapely.set_precision(polygon, GRID).is_empty:
+        raise SceneError(f"{where}, {what}: narrower than {GRID:g} m. Coordinates are metres.")
+
+
+def _first_crossing(ring: LinearRing) -> tuple[int, int, float, float] | None:
+    """Numbers (from 1) of the first two edges of a ring that cross, and where; None if none do."""
+    if ring.is_simple:
+        return None
+    edges = [LineString(ends) for ends in pairwise(ring.coords)]
+    pairs = shapely.STRtree(edges).query(edges, predicate="crosses").T.tolist()
+    if not pairs:
+        return None
+    i, j = min(pairs)
+    point = edges[i].intersection(edges[j])
+    return i + 1, j + 1, point.x, point.y
+
+
+def _normalise(
+    where: str, workspace: Polygon, obstacles: Sequence[Obstacle], inflate: float
+) -> tuple[Polygon, list[Obstacle]]:
+    """Make holes of the workspace obstacles, grow by the robot, and cut at the workspace."""
+    room = Polygon(workspace.exterior)
+    holes = [
+        Obstacle(f"hole {i} of the workspace", Polygon(h))
+        for i, h in enumerate(workspace.interiors, 1)
+    ]
+    if inflate > 0.0:
+        shrunk = room.buffer(-inflate)
+        if not isinstance(shrunk, Polygon) or shrunk.is_empty:
+            raise SceneError(
+                f"{where}: a robot of radius {inflate} m has no room in the workspace."
+            )
+        room = shrunk
+    # A vertex computed on a slanted border lies 1e-16 beside it: that does not stick out.
+    reach = room.buffer(GRID, join_style="mitre")
+    shapely.prepare(reach)
+    kept: list[Obstacle] = []
+    for obstacle in (*obstacles, *holes):
+        polygon = obstacle.polygon.buffer(inflate) if inflate > 0.0 else obstacle.polygon
+        if obstacle.moves or reach.covers(polygon):
+            kept.append(Obstacle(obstacle.name, polygon, obstacle.dynamics))
+            continue
+        pieces = _inside(room, polygon)
+        if inflate == 0.0:
+            warnings.warn(
+                f"{where}, {obstacle.name}: sticks out of the workspace and was cut at its border"
+                + ("." if pieces else "; nothing of it is left."),
+                SceneWarning,
+                stacklevel=4,
+            )
+        for i, piece in enumerate(pieces, 1):
+            suffix = f" ({i})" if len(pieces) > 1 else ""
+            kept.append(Obstacle(obstacle.name + suffix, piece, obstacle.dynamics))
+    return room, kept
+
+
+def _inside(room: Polygon, polygon: Polygon, cut: bool = True) -> list[Polygon]:
+    """The pieces of a polygon within a workspace; the polygon itself if it need not be cut."""
+    if not cut:
+        return [polygon]
+    pieces = shapely.get_parts(room.intersection(polygon))
+    return [p for p in pieces if isinstance(p, Polygon) and p.area > 0.0]
+
+
+def _as_query(where: str, name: str, ends: tuple[ArrayLike, ArrayLike]) -> Query:
+    try:
+        start, goal = ends
+    except (TypeError, ValueError) as error:
+        raise SceneError(
+            f"{where}, query '{name}': {ends!r} is no pair of points. Give (start, goal)."
+        ) from error
+    return Query(
+        name,
+        _as_point(where, f"start of query '{name}'", start),
+        _as_point(where, f"goal of query '{name}'", goal),
+    )
+
+
+def _as_point(where: str, what: str, point: ArrayLike) -> NDArray[np.float64]:
+    try:
+        xy = np.array(point, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise SceneError(f"{where}, {what}: {point!r} is not a point. Give [x, y].") from error
+    if xy.shape != (2,):
+        raise SceneError(f"{where}, {what}: {point!r} is not a point. Give [x, y].")
+    if not (np.abs(xy) <= LARGEST).all():
+        raise SceneError(
+            f"{where}, {what}: ({xy[0]}, {xy[1]}). "
+            f"Coordinates must be finite numbers, in metres, up to {LARGEST:g}."
+        )
+    # On the grid of the obstacles, so that a start on a vertex or a border stays there.
+    xy = np.round(xy, GRID_DECIMALS)
+    xy += 0.0  # -0.0 and 0.0 are one place; hashes of rows must agree
+    xy.setflags(write=False)
+    return xy
+
+
+def _check_free(where: str, scene: Scene, what: str, point: NDArray[np.float64]) -> None:
+    place = shapely.Point(point)
+    if scene.workspace.distance(place) > GRID:
+        raise SceneError(
+            f"{where}, {what}: ({point[0]:g}, {point[1]:g}) lies outside the workspace "
+            f"{tuple(scene.bounds)}. Move it inside."
+        )
+    if scene.arrangement.solid.contains(place):
+        names = [o.name for o in scene.obstacles if o.polygon.distance(place) <= GRID]
+        names = names or ["the border of the workspace"]
+        raise SceneError(
+            f"{where}, {what}: ({point[0]:g}, {point[1]:g}) lies inside {' and '.join(names)}. "
+            "Move it to free space."
+        )
+
+
+def scene_at(scene: Scene, time: float, without: Collection[str] = ()) -> Scene:
+    """The static scene that a dynamic one is at a time.
+
+    Parameters
+    ----------
+    scene : Scene
+    time : float
+        Seconds. Obstacles are where they are then; those that are not there then are left out.
+    without : names of obstacles
+        To be left out too: what is not known yet, or what the robot's coming has removed.
+
+    Returns
+    -------
+    Scene
+        Its queries are those of the scene; their ends may lie in an obstacle at that time.
+
+    Examples
+    --------
+    >>> from suite.scenes.dynamics import Dynamics, constant_speed
+    >>> door = Obstacle("door", shapely.box(0, 4, 2, 5), Dynamics(constant_speed((1, 0), 0, 5)))
+    >>> scene = make_scene("hall", shapely.box(0, 0, 9, 9), [door], ((1, 1), (1, 8)))
+    >>> scene_at(scene, 3.0).obstacles[0].polygon.bounds
+    (3.0, 4.0, 5.0, 5.0)
+    """
+    obstacles = [
+        at_time
+        for o in scene.obstacles
+        if o.name not in without
+        for at_time in _obstacle_at(scene.workspace, o, time)
+    ]
+    return replace(scene, obstacles=tuple(obstacles))
+
+
+def _obstacle_at(room: Polygon, obstacle: Obstacle, time: float) -> list[Obstacle]:
+    """An obstacle as it is at a time: in pieces where the border cuts it, or not there at all."""
+    dynamics = obstacle.dynamics
+    if dynamics is None:
+        return [obstacle]
+    if not dynamics.is_there(time):
+        return []
+    polygon = translate(obstacle.polygon, *dynamics.offset(time))
+    cut = obstacle.moves and not room.covers(polygon)
+    pieces = _inside(room, polygon, cut)
+    names = [obstacle.name] if len(pieces) == 1 else _numbered(obstacle.name, len(pieces))
+    return [Obstacle(name, piece) for name, piece in zip(names, pieces, strict=True)]
+
+
+def _numbered(name: str, count: int) -> list[str]:
+    return [f"{name} ({i})" for i in range(1, count + 1)]
+
+
+def scene_fingerprint(scene: Scene, query: Query) -> str:
+    """Hash of a scene's geometry and one query: the key under which results are kept."""
+    ends = json.dumps([query.start.tolist(), query.goal.tolist()])
+    return hashlib.sha256(f"{scene.hash}\n{ends}".encode()).hexdigest()[:16]

@@ -1,0 +1,1 @@
+"""The result store: rows that are written once, kept, merged and named."""

@@ -1,0 +1,79 @@
+"""Opening a store's file, and what SQLite's errors mean to a user."""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from suite.errors import StoreError
+from suite.store.schema import APPLICATION_ID, SCHEMA_VERSION
+
+BUSY_S = 10.0
+"""How long to wait for another process that writes."""
+
+
+def connect(path: Path, *, writable: bool) -> sqlite3.Connection:
+    """Connect to the file of a store, made if it is missing and may be written."""
+    with explained(path):
+        if writable:
+            # As a URI too, so that other stores can be attached for reading only.
+            return sqlite3.connect(f"{path.absolute().as_uri()}", uri=True, timeout=BUSY_S)
+        return sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=BUSY_S)
+
+
+def open_for_reading(path: Path) -> sqlite3.Connection:
+    """Open a store beside whoever writes to it; StoreError if it is missing, or is no store."""
+    if not path.exists():
+        raise missing(path)
+    connection = connect(path, writable=False)
+    try:
+        check_is_store(path, connection)
+    except BaseException:
+        connection.close()
+        raise
+    return connection
+
+
+def check_is_store(path: Path, connection: sqlite3.Connection) -> None:
+    """Raise StoreError unless the file is a store of this version."""
+    with explained(path):
+        (application,) = connection.execute("PRAGMA application_id").fetchone()
+        (version,) = connection.execute("PRAGMA user_version").fetchone()
+    if application != APPLICATION_ID:
+        raise StoreError(f"{path}: is an SQLite file, but no store of kbga-bench. Name another.")
+    if version != SCHEMA_VERSION:
+        raise StoreError(
+            f"{path}: is a store of version {version}, and this kbga-bench reads version "
+            f"{SCHEMA_VERSION}. Use the kbga-bench that wrote it, or name a new store."
+        )
+
+
+def missing(path: Path) -> StoreError:
+    """The error to raise where there is no store."""
+    return StoreError(f"{path}: there is no such store. `kbga-bench run` makes one.")
+
+
+@contextmanager
+def explained(path: Path) -> Iterator[None]:
+    """Say SQLite's errors in words that name the file and what to do."""
+    try:
+        yield
+    except sqlite3.IntegrityError as error:
+        raise StoreError(f"{path}: a row can't be added ({error}).") from error
+    except sqlite3.DatabaseError as error:
+        raise StoreError(f"{path}: {_in_words(error)}") from error
+
+
+def _in_words(error: sqlite3.DatabaseError) -> str:
+    name = getattr(error, "sqlite_errorname", "")
+    if name.startswith("SQLITE_NOTADB"):
+        return "is no store (not an SQLite file). Name another."
+    if name.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
+        return "another process is writing to it. Wait for it, or name another store."
+    if name.startswith(("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM")):
+        return f"can't be opened or written ({error}). Check its folder and permissions."
+    if name.startswith("SQLITE_FULL"):
+        return "the disk is full. Make room and run the same command again."
+    if name.startswith("SQLITE_IOERR"):
+        return f"can't be read or written ({error}). Look after its disk: full, over quota, gone?"
+    return f"SQLite says: {error}."
