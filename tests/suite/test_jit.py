@@ -73,7 +73,8 @@ def compiles_by_itself(file: Path) -> bool:
 
 
 def test_every_file_with_kernels_is_a_source_of_the_machine_code():
-    files = [f for package in ("suite", "kbga", "baselines") for f in (ROOT / package).rglob("*.py")]
+    packages = [ROOT / name for name in ("suite", "kbga", "baselines")]
+    files = [file for package in packages for file in package.rglob("*.py")]
     assert {file for file in files if names_kernels(file)} - {*sources()} == set()
     assert [file for file in files if compiles_by_itself(file)] == []
 
