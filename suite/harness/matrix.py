@@ -45,7 +45,8 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from suite.errors import ContractError, MatrixError, PluginError, SceneError, did_you_mean
+from suite.errors import ContractError, PluginError, SceneError, did_you_mean
+from suite.harness.outline import matrix_file
 from suite.harness.toml_reader import Reader, read_toml
 from suite.planner import Budget
 from suite.plugins.discovery import (
@@ -57,14 +58,12 @@ from suite.plugins.discovery import (
     settings_as_dict,
 )
 from suite.scenes.catalogue import has_scene, load_scene
-from suite.scenes.geojson import SUFFIXES
-from suite.scenes.modifiers import MARK, expand_twins, split_modifiers
+from suite.scenes.modifiers import MARK, SUFFIXES, expand_twins, split_modifiers
 from suite.scenes.scene import Scene, scene_fingerprint
 from suite.simulation.record import settings_as_data
 from suite.simulation.settings import world_settings
 from suite.store.record import Cell, World
 
-FOLDER = Path(__file__).parent / "matrices"
 PLANNER = "the name of a planner (see `kbga-bench list planners`)"
 WORLD = "the world a name, for tables"
 """What a text that is missing would be."""
@@ -194,42 +193,13 @@ class Matrix:
         ]
 
 
-def matrix_names() -> list[str]:
-    """Names of the matrices that ship with the suite.
-
-    Examples
-    --------
-    >>> "paper-static" in matrix_names()
-    True
-    """
-    return sorted(path.stem for path in FOLDER.glob("*.toml"))
-
-
-def matrix_file(name_or_path: str | Path) -> Path:
-    """The file of a matrix of the catalogue, or a file of one's own.
-
-    Raises
-    ------
-    MatrixError
-        If there is none.
-    """
-    path = Path(name_or_path)
-    if str(name_or_path) in matrix_names():
-        return FOLDER / f"{name_or_path}.toml"
-    if path.exists():
-        return path
-    raise MatrixError(
-        f"no matrix '{name_or_path}'. Give a file, or one of: {', '.join(matrix_names())}."
-    )
-
-
 def load_matrix(name_or_path: str | Path) -> Matrix:
     """Read a matrix and check all of it: every scene loads, every planner takes its settings.
 
     Parameters
     ----------
     name_or_path : str or Path
-        One of :func:`matrix_names`, or a file in the format of this module.
+        One of :func:`suite.harness.outline.matrix_names`, or a file in the format of this module.
 
     Returns
     -------
