@@ -55,10 +55,9 @@ def outline(name: str) -> dict[str, Any]:
     1440
     """
     matrix = tomllib.loads(matrix_file(name).read_text(encoding="utf-8"))
-    seeds = _count(matrix["seeds"])
-    tables = [{"scene": s} if isinstance(s, str) else s for s in matrix["scenes"]]
+    tables = [entry if isinstance(entry, dict) else {"scene": entry} for entry in matrix["scenes"]]
     scenes = {
-        twin: _count(table["seeds"]) if "seeds" in table else seeds
+        twin: _count({**matrix, **table})
         for table in tables
         for twin in expand_twins(table["scene"])
     }
@@ -67,12 +66,13 @@ def outline(name: str) -> dict[str, Any]:
         "description": matrix["description"],
         "scenes": len(scenes),
         "planners": len(matrix["planner"]),
-        "seeds": seeds,
+        "seeds": _count(matrix),
         "runs": rounds * len(matrix["planner"]),
     }
 
 
-def _count(seeds: int | list[int]) -> int:
+def _count(table: Mapping[str, Any]) -> int:
+    seeds: int | list[int] = table["seeds"]
     return seeds if isinstance(seeds, int) else len(seeds)
 
 
