@@ -2,8 +2,6 @@
 
 import ast
 import re
-import tomllib
-from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
@@ -108,19 +106,6 @@ def test_only_the_command_line_imports_inside_functions():
 @pytest.mark.parametrize("module", FILES)
 def test_files_stay_readable(module):
     assert len(FILES[module].read_text(encoding="utf-8").splitlines()) < LONGEST_FILE
-
-
-def test_the_wheel_holds_the_three_packages_and_nothing_else():
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    find = project["tool"]["setuptools"]["packages"]["find"]
-    folders = {path.name for path in ROOT.iterdir() if path.is_dir() and path.name.isidentifier()}
-    shipped = {
-        name
-        for name in folders
-        if any(fnmatch(name, p) for p in find["include"])
-        and not any(fnmatch(name, p) for p in find["exclude"])
-    }
-    assert shipped == set(PACKAGES)
 
 
 def test_every_folder_with_code_is_a_package():
