@@ -66,7 +66,7 @@ lint: setup-dev
 
 # What can be imported, from the docstrings.
 docs: setup-dev
-	$(BIN)/python -m pdoc --docformat numpy --output-directory out/docs suite kbga baselines
+	$(BIN)/python -m tests.reference out/docs
 
 # One process measures everything, so that ratios hold; the record becomes the table of goals.
 perf: setup-dev

@@ -66,20 +66,18 @@ class PlanStatus(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """What a run may use; None means no limit. A planner keeps those that it can count.
-
-    wall_s : float, seconds of wall time.
-    cpu_s : float, seconds of CPU time of the run's process, all its threads together, as
-        ``recorder.cpu_s()`` counts them. A busy machine stretches the run, and leaves it as much.
-    generations : int, generations (or iterations, for planners that iterate).
-    checks : int, questions whether a segment is free, asked of the scene. One that a planner
-        answers from what it remembers is a question too: checks mean the same for everybody.
-    """
+    """What a run may use; None means no limit. A planner keeps those that it can count."""
 
     wall_s: float | None = None
+    """Seconds of wall time."""
     generations: int | None = None
+    """Generations, or iterations, for planners that iterate."""
     checks: int | None = None
+    """Questions whether a segment is free, asked of the scene. One that a planner answers from what
+    it remembers is a question too: checks mean the same for everybody."""
     cpu_s: float | None = None
+    """Seconds of CPU time of the run's process, all its threads together, as ``recorder.cpu_s()``
+    counts them. A busy machine stretches the run, and leaves it as much."""
 
     def __post_init__(self) -> None:
         for name in ("wall_s", "generations", "checks", "cpu_s"):
@@ -90,79 +88,71 @@ class Budget:
 
 @dataclass(frozen=True, slots=True)
 class Abilities:
-    """What a planner can do.
-
-    anytime : it reports improvements while it runs.
-    deterministic : it uses no randomness at all.
-    exact : a ``SOLVED`` path is the shortest one, and it knows when there is none.
-    budgets : the fields of :class:`Budget` that it keeps.
-    population : it shows the recorder its population, whenever that asks for a snapshot.
-    """
+    """What a planner can do."""
 
     anytime: bool = False
+    """It reports improvements while it runs."""
     deterministic: bool = False
+    """It uses no randomness at all."""
     exact: bool = False
+    """A ``SOLVED`` path is the shortest one, and it knows when there is none."""
     budgets: frozenset[str] = frozenset()
+    """The fields of :class:`Budget` that it keeps."""
     population: bool = False
+    """It shows the recorder its population, whenever that asks for a snapshot."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """What a planner returns.
-
-    status : SOLVED, INFEASIBLE or EXHAUSTED; the other words are the harness's.
-    path : (n, 2) float64, metres. First row the start, last row the goal. None without a path.
-    claimed_cost : the planner's own idea of the path's length, metres.
-    generations : generations or iterations until the run ended.
-    generation_of_best : the one in which the returned path was first found.
-    checks : questions asked whether a segment is free, as a budget of checks counts them.
-    details : any further numbers that the planner wants to keep with its row.
-    computed_checks : those of them that were computed; the others were answered from memory. None
-        for a planner that remembers none: all of them.
-    """
+    """What a planner returns."""
 
     status: PlanStatus
+    """SOLVED, INFEASIBLE or EXHAUSTED; the other words are the harness's."""
     path: NDArray[np.float64] | None = None
+    """(n, 2), metres. First row the start, last row the goal. None without a path."""
     claimed_cost: float | None = None
+    """The planner's own idea of the path's length, metres."""
     generations: int | None = None
+    """Generations or iterations until the run ended."""
     generation_of_best: int | None = None
+    """The one in which the returned path was first found."""
     checks: int | None = None
+    """Questions asked whether a segment is free, as a budget of checks counts them."""
     details: Mapping[str, float] = field(default_factory=dict)
+    """Any further numbers that the planner wants to keep with its row."""
     computed_checks: int | None = None
+    """Those checks that were computed; the others were answered from memory. None for a planner
+    that remembers none: all of them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Improvement:
-    """A better path was found. Times in seconds since the clock started; cost in metres."""
+    """A better path was found."""
 
     wall_s: float
+    """Seconds of wall time since the clock started."""
     cpu_s: float
+    """Seconds of CPU time since then."""
     cost: float
+    """Its length, metres."""
     generation: int | None
     checks: int | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Snapshot:
-    """A population as it was in one generation.
-
-    generation : int. The first population is number 0.
-    paths : its paths, each (n, 2) float64, metres.
-    best : the best feasible path so far; None without one.
-    """
+    """A population as it was in one generation."""
 
     generation: int
+    """The first population is number 0."""
     paths: tuple[NDArray[np.float64], ...]
+    """Each (n, 2), metres."""
     best: NDArray[np.float64] | None = None
+    """The best feasible path so far; None without one."""
 
 
 class Recorder:
     """Takes what a planner reports while it runs, and stamps it with the run's one clock.
-
-    improvements : list of Improvement, costs falling.
-    trace : list of dicts, one for each generation that the planner chose to describe.
-    snapshots : list of Snapshot, of the generations that were asked for.
-    started : what ``time.perf_counter`` said when the clock started.
 
     Parameters
     ----------
@@ -172,13 +162,19 @@ class Recorder:
 
     def __init__(self, *, snapshot_of: Callable[[int], bool] = lambda _: False) -> None:
         self.improvements: list[Improvement] = []
+        """Costs falling."""
         self.trace: list[dict[str, float]] = []
+        """One row for each generation that the planner chose to describe."""
         self.snapshots: list[Snapshot] = []
+        """Of the generations that were asked for."""
         self.wants_snapshot = snapshot_of
         self.start_clock()
 
     def start_clock(self) -> None:
-        """Set the clock to zero. The harness calls it, immediately before ``plan``."""
+        """Set the clock to zero. The harness calls it, immediately before ``plan``.
+
+        ``started`` is what ``time.perf_counter`` said then.
+        """
         self.started = time.perf_counter()
         self._cpu = time.process_time()
 
@@ -222,19 +218,17 @@ class NoSettings:
 
 
 class Planner(ABC):
-    """Base of all planners. Subclasses set ``name`` and write ``plan``.
-
-    name : the word under which users ask for it; the entry point has the same name.
-    Settings : a frozen dataclass whose fields all have defaults.
-    abilities : what it can do.
-    interface : the version of this file that it is written for. Say it in a plugin that is
-        installed by others: one for another version is then refused, with that reason.
-    """
+    """Base of all planners. Subclasses set ``name`` and write ``plan``."""
 
     name: ClassVar[str]
+    """The word under which users ask for it; the entry point has the same name."""
     Settings: ClassVar[type[Any]] = NoSettings
+    """A frozen dataclass whose fields all have defaults."""
     abilities: ClassVar[Abilities] = Abilities()
+    """What it can do."""
     interface: ClassVar[int] = INTERFACE
+    """The version of this file that it is written for. Say it in a plugin that is installed by
+    others: one for another version is then refused, with that reason."""
 
     def __init__(self, settings: Any = None) -> None:
         self.settings = self.Settings() if settings is None else settings
