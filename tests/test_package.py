@@ -77,3 +77,13 @@ def test_no_user_installs_what_the_project_is_developed_with(wheel):
     ]
     tools = ("pytest", "mypy", "ruff", "hypothesis", "pdoc", "import-linter", "setuptools")
     assert [line for line in required if line.startswith(tools)] == []
+
+
+@pytest.mark.parametrize(("goal", "tools"), [("bench", False), ("setup", False), ("lint", True)])
+def test_only_who_tests_installs_test_tools(goal, tools):
+    # As if pyproject.toml had just been changed: what would be done, and not done.
+    command = ["make", "--dry-run", "--what-if=pyproject.toml", goal]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    installs = [line for line in done.stdout.splitlines() if "pip install" in line]
+    assert any(" -e " in line for line in installs)
+    assert any("--group dev" in line for line in installs) is tools
