@@ -48,14 +48,8 @@ from typing import Any
 from suite.errors import ContractError, MatrixError, PluginError, SceneError, did_you_mean
 from suite.harness.toml_reader import Reader, read_toml
 from suite.planner import Budget
-from suite.plugins.discovery import (
-    PluginInfo,
-    load_planner,
-    make_settings,
-    planner_info,
-    planner_names,
-    settings_as_dict,
-)
+from suite.plugins.discovery import PluginInfo, load_planner, planner_info, planner_names
+from suite.plugins.settings import make_settings, settings_as_dict
 from suite.scenes.catalogue import has_scene, load_scene
 from suite.scenes.geojson import SUFFIXES
 from suite.scenes.modifiers import MARK, expand_twins, split_modifiers

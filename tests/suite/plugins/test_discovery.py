@@ -8,14 +8,8 @@ import pytest
 
 from suite.errors import PluginError
 from suite.planner import Plan, Planner, PlanStatus
-from suite.plugins.discovery import (
-    available_planners,
-    load_planner,
-    make_settings,
-    planner_names,
-    planner_version,
-    settings_as_dict,
-)
+from suite.plugins.discovery import available_planners, load_planner, planner_names, planner_version
+from suite.plugins.settings import make_settings, settings_as_dict
 
 GOOD = """
 from dataclasses import dataclass
