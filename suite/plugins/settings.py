@@ -1,11 +1,9 @@
 """The settings of a planner: from what a user wrote to its frozen dataclass, and to plain data.
 
-msgspec converts and checks: it knows Python's types, unions, literals and enumerations, and gives
-defaults their place. What is ours are the words in which an error says what a value should be.
+A string is converted to the type that its field declares: it may come from the command line.
 """
 
 import dataclasses
-import types
 import typing
 from collections.abc import Mapping
 from enum import Enum
@@ -15,6 +13,7 @@ import msgspec
 
 from suite.errors import ContractError, PluginError, did_you_mean
 from suite.planner import Planner
+from suite.typed import in_words
 
 _WORDS = {"none": None, "yes": True, "on": True, "no": False, "off": False}
 """What users write on the command line beside the words of TOML."""
@@ -63,7 +62,7 @@ def make_settings(planner_class: type[Planner], mapping: Mapping[str, Any]) -> A
             values[key] = _converted(value, wanted[key])
         except msgspec.ValidationError as error:
             raise PluginError(
-                f"{owner}: {key} is {value!r}. It must be {_in_words(wanted[key])}."
+                f"{owner}: {key} is {value!r}. It must be {in_words(wanted[key])}."
             ) from error
         except TypeError as error:
             raise PluginError(f"{owner}: the type of {key} can't be read: {error}.") from error
@@ -113,30 +112,6 @@ def _converted(value: Any, wanted: Any) -> Any:
         return msgspec.convert(value, wanted, strict=False)
     except msgspec.ValidationError:
         return msgspec.convert(word, wanted)
-
-
-def _in_words(wanted: Any) -> str:
-    """Put a declared type in a user's words: "a number", "a whole number or none"."""
-    words = {
-        int: "a whole number",
-        float: "a number",
-        bool: "true or false",
-        str: "a string",
-        type(None): "none",
-    }
-    if wanted in words:
-        return words[wanted]
-    origin, inner = typing.get_origin(wanted), typing.get_args(wanted)
-    if origin in (types.UnionType, typing.Union):
-        return " or ".join(_in_words(t) for t in inner)
-    if origin is typing.Literal:
-        return "one of " + ", ".join(repr(t) for t in inner)
-    if isinstance(wanted, type) and issubclass(wanted, Enum):
-        return "one of " + ", ".join(repr(m.value) for m in wanted)
-    if origin is tuple:
-        kinds = ", ".join("..." if t is Ellipsis else _in_words(t) for t in inner)
-        return f"a list ({kinds})"
-    return str(getattr(wanted, "__name__", wanted))
 
 
 def _plain(value: Any) -> Any:

@@ -288,7 +288,7 @@ def test_made_settings_are_frozen():
         ("elitist", 1, "true or false"),
         ("label", 3, "a string"),
         ("limit", "few", "a whole number or none"),
-        ("kind", "loose", "one of 'grid', 'free'"),
+        ("kind", "loose", "one of 'free', 'grid'"),
         ("weights", "1, x", "a list (a number, ...)"),
     ],
 )
