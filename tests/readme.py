@@ -1,4 +1,4 @@
-"""Tables and figures of the READMEs, made from results/: a test holds the pages to them.
+"""Tables and figures of the READMEs, made from results/ and the matrices: a test holds the pages.
 
 python -m tests.readme writes them into the pages. A table stands behind ``<!-- table: NAME -->``; a
 sentence is found by its words, and gets its figures. One whose words no longer stand anywhere is
@@ -8,6 +8,7 @@ named: it has to be put in by hand.
 import json
 import re
 import sys
+import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
@@ -198,6 +199,20 @@ def differences() -> str:
     return markdown(head, "lllrrrr", lines)
 
 
+def tuned() -> str:
+    """The settings of OMPL's planners that are called tuned."""
+    matrix = ROOT / "suite" / "harness" / "matrices" / "all-planners.toml"
+    lines = [
+        [
+            f"`{variant['planner']}`",
+            ", ".join(f"`{k} = {json.dumps(v)}`" for k, v in variant["settings"].items()),
+        ]
+        for variant in tomllib.loads(matrix.read_text(encoding="utf-8"))["planner"]
+        if variant.get("name", "").endswith("-tuned")
+    ]
+    return markdown(("planner", "tuned"), "ll", lines)
+
+
 TABLES: Mapping[str, Callable[[], str]] = {
     "gaps": gaps,
     "table 1": table_1,
@@ -206,6 +221,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "times": times,
     "dynamic": dynamic,
     "differences": differences,
+    "tuned": tuned,
 }
 
 
@@ -366,13 +382,13 @@ SENTENCES: Mapping[str, Callable[[], str]] = {
     )
 }
 
-TABLE = re.compile(r"<!-- table: (.+?) -->\n\n(?:\|.*\n)*")
+TABLE = re.compile(r"<!-- table: (.+?) -->\n\n(?:\|.*\n)*\n?")
 FIGURE = re.compile(r"\d+(?:[.,]\d+)*")
 
 
 def rewritten(page: str) -> str:
     """A page with its tables and the figures of its sentences as results/ has them."""
-    page = TABLE.sub(lambda found: f"<!-- table: {found[1]} -->\n\n{TABLES[found[1]]()}\n", page)
+    page = TABLE.sub(lambda found: f"<!-- table: {found[1]} -->\n\n{TABLES[found[1]]()}\n\n", page)
     for make in SENTENCES.values():
         page = with_figures(page, make())
     return page
