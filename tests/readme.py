@@ -10,6 +10,8 @@ import re
 import sys
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import fields
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import numpy as np
@@ -199,18 +201,23 @@ def differences() -> str:
     return markdown(head, "lllrrrr", lines)
 
 
-def tuned() -> str:
-    """The settings of OMPL's planners that are called tuned."""
+def settings() -> str:
+    """The settings of the baselines: defaults, and what is called tuned."""
     matrix = ROOT / "suite" / "harness" / "matrices" / "all-planners.toml"
-    lines = [
-        [
-            f"`{variant['planner']}`",
-            ", ".join(f"`{k} = {json.dumps(v)}`" for k, v in variant["settings"].items()),
-        ]
-        for variant in tomllib.loads(matrix.read_text(encoding="utf-8"))["planner"]
-        if variant.get("name", "").endswith("-tuned")
-    ]
-    return markdown(("planner", "tuned"), "ll", lines)
+    variants = tomllib.loads(matrix.read_text(encoding="utf-8"))["planner"]
+    tuned = {v["planner"]: v["settings"] for v in variants if v.get("name", "").endswith("-tuned")}
+    lines = []
+    for plugin in entry_points(group="kbga_bench.planners"):
+        if plugin.module.startswith("baselines."):
+            named = fields(plugin.load().Settings)
+            # What has none of ours is left to the package, or off.
+            defaults = (
+                f.name if f.default is None else f"{f.name} = {json.dumps(f.default)}"
+                for f in named
+            )
+            others = (f"{k} = {json.dumps(v)}" for k, v in tuned.get(plugin.name, {}).items())
+            lines.append([f"`{plugin.name}`", ", ".join(defaults), ", ".join(others)])
+    return markdown(("planner", "settings", "tuned"), "lll", sorted(lines))
 
 
 TABLES: Mapping[str, Callable[[], str]] = {
@@ -221,7 +228,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "times": times,
     "dynamic": dynamic,
     "differences": differences,
-    "tuned": tuned,
+    "settings": settings,
 }
 
 
