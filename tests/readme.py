@@ -330,7 +330,7 @@ def answers() -> str:
     return (
         f"`kbga-plus` takes {latency['kbga-plus'] / soonest:.1f} times as long to answer as "
         f"RRT-Connect, and {latency['kbga-plus'] / exact:.0f} times as long as the exact solver; "
-        f"RRT-Connect's robot goes {way:.1f} times as far"
+        f"RRT-Connect's robot goes {way:.1f} times the exact way"
     )
 
 
