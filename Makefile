@@ -2,26 +2,36 @@
 # Each sets up what it needs in .venv when it is missing.
 PYTHON ?= python3
 BIN := .venv/bin
-STAMP := .venv/.installed
+INSTALLED := .venv/.installed
+# What is installed from this folder beside the base: all planners, and rows as parquet.
+EXTRAS := others,parquet
 STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
 
-.PHONY: help setup browser bench test test-slow torture lint perf harness results search-readings clean
+.PHONY: help setup setup-dev browser bench test test-slow torture lint docs perf harness results \
+	search-readings clean
 
 help:
 	@echo "make bench     run the matrix paper-static and print its tables (ARGS=--quick: two seeds)"
 	@echo "make test      run the tests; test-slow, torture: the long ones; lint"
 	@echo "make setup     make .venv with the command kbga-bench; . .venv/bin/activate"
+	@echo "make docs      write the reference of the Python interface to out/docs"
 	@echo "make results   remake results/: three quarters of an hour; results-NAME: one folder of it"
 	@echo "make perf, make harness   measure the planners' times, and what the harness costs"
 
-setup: $(STAMP)
+setup: $(INSTALLED)
+setup-dev: $(INSTALLED)-dev
 
-$(STAMP): pyproject.toml
+$(INSTALLED): pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet -e ".[dev]"
+	$(BIN)/python -m pip install --quiet -e ".[$(EXTRAS)]"
+	touch $@
+
+# And what tests, linters and the reference need.
+$(INSTALLED)-dev: $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --group dev -e ".[$(EXTRAS),dask]"
 	touch $@
 
 # The report is tested in Debian's chromium. Where it is missing and can't be installed, the tests
@@ -38,24 +48,28 @@ bench: setup
 	$(BIN)/kbga-bench tables $(STORE)
 
 # The kernels' claims hold compiled and interpreted: the second line runs them without the JIT.
-test: setup browser
+test: setup-dev browser
 	$(BIN)/python -m pytest -q -m "not slow and not torture" -n 2 --dist worksteal
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -m "not slow and not torture" -n 2 tests/suite/geometry tests/kbga
 
-test-slow: setup
+test-slow: setup-dev
 	$(BIN)/python -m pytest -q -m slow -n 2 --dist worksteal
 
 # The harness is killed at 100 random moments of a matrix, and resumed.
-torture: setup
+torture: setup-dev
 	$(BIN)/python -m pytest -q -m torture -n 2 --dist worksteal
 
-lint: setup
+lint: setup-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
+# What can be imported, from the docstrings.
+docs: setup-dev
+	$(BIN)/python -m pdoc --docformat numpy --output-directory out/docs suite kbga baselines
+
 # One process measures everything, so that ratios hold; the record becomes the table of goals.
-perf: setup
+perf: setup-dev
 	mkdir -p out
 	$(BIN)/python -m pytest -q tests/perf --benchmark-only --benchmark-json=out/performance.json \
 		--benchmark-columns=median,max,rounds --benchmark-sort=name

@@ -3,7 +3,8 @@
 import sys
 import warnings
 from collections.abc import Callable
-from typing import Any
+from importlib.metadata import version as version_of
+from typing import Annotated, Any
 
 import typer
 
@@ -18,7 +19,7 @@ app = typer.Typer(
     epilog="Start with: kbga-bench list scenes; kbga-bench plan zigzag --planner kbga --seed 1",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     rich_markup_mode="markdown",
 )
 
@@ -44,12 +45,30 @@ for name, command in COMMANDS.items():
     app.command(name)(command)
 
 
+def _say_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"kbga-bench {version_of('kbga-bench')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _before_commands(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_say_version, is_eager=True, help="Show the version and exit."
+        ),
+    ] = False,
+) -> None:
+    pass
+
+
 def main() -> None:
     """Run the command; errors that users can mend are one line and exit code 2."""
     warnings.showwarning = _show_warning
     end_quietly()
     try:
-        app()
+        app(prog_name=app.info.name)
     except KbgaBenchError as error:
         typer.echo(f"kbga-bench: error: {_one_line(error)}", err=True)
         sys.exit(2)

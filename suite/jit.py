@@ -3,9 +3,10 @@
 numba notices when the file of a cached function changes, but not when a function that it calls
 changes in another file: after an update, old machine code would go on running inside new. So there
 is one folder for each state of the files that kernels are made from, and a hash of them is its
-name.
+name. Whoever decorates a kernel imports this file, which points numba there first.
 """
 
+import contextlib
 import hashlib
 import os
 import shutil
@@ -14,6 +15,8 @@ from pathlib import Path
 
 import numba
 from numba import njit
+from numba.core import event
+from platformdirs import user_cache_path
 
 # _nrt is numba's own name for the switch, which its type hints leave out.
 kernel = njit(cache=True, _nrt=False)  # type: ignore[call-overload]
@@ -26,44 +29,70 @@ inlined_kernel = njit(  # type: ignore[call-overload]
 )
 """The same, pasted into each caller: for the few that are called for every segment."""
 
-_PACKAGES = ("suite", "kbga", "baselines")
-_MARKS = (b"suite.jit", b"njit")
-"""What stands in each file that holds kernels."""
-_CONSTANTS = ("suite/geometry", "kbga")
-"""Folders whose other files hold what kernels read: tolerances, sizes, settings."""
+allocating_kernel = njit(cache=True)
+"""Compile a function that makes arrays of its own, for which numba counts references."""
+
+SOURCES = (
+    "suite/jit.py",
+    "suite/geometry/*.py",
+    "suite/scenes/exact.py",
+    "suite/scenes/homotopy.py",
+    "kbga/**/*.py",
+    "baselines/cma_es.py",
+    "baselines/grid_astar.py",
+)
+"""The files that hold kernels, and those beside them that hold what kernels read: tolerances,
+sizes, settings. All of the packages need not be read to know them; a test does."""
 
 _KEPT = 4
 """Folders of older sources that stay, so that two checkouts side by side don't evict each other."""
 
 
-def use_cache_of_these_sources() -> Path:
-    """Point numba's cache at the folder that belongs to the kernels' sources as they are now.
+def cache_folder() -> Path:
+    """The folder that belongs to the kernels' sources as they are now.
 
     Returns
     -------
     Path
-        The folder, below ``NUMBA_CACHE_DIR`` if that is set, else below the user's cache folder.
+        Below ``NUMBA_CACHE_DIR`` if that is set, else below the user's cache folder.
     """
     digest = hashlib.sha256(numba.__version__.encode())
-    for name in _PACKAGES:
-        spec = find_spec(name)
+    for source in sources():
+        digest.update(source.read_bytes())
+    base = os.environ.get("NUMBA_CACHE_DIR")
+    top = Path(base, "kbga-bench") if base else user_cache_path("kbga-bench")
+    return top / digest.hexdigest()[:16]
+
+
+def sources() -> list[Path]:
+    """The files that :data:`SOURCES` names, of those of our packages that are installed."""
+    found: list[Path] = []
+    for pattern in SOURCES:
+        package, _, files = pattern.partition("/")
+        spec = find_spec(package)
         for root in (spec.submodule_search_locations or []) if spec else []:
-            for source in sorted(Path(root).rglob("*.py")):
-                content = source.read_bytes()
-                place = source.relative_to(Path(root).parent).as_posix()
-                if place.startswith(_CONSTANTS) or any(mark in content for mark in _MARKS):
-                    digest.update(content)
-    base = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
-    top = (Path(base) if base else Path.home() / ".cache") / "kbga-bench"
-    folder = top / digest.hexdigest()[:16]
-    if not folder.is_dir():
-        _make_room(top)
-    numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
-    return folder
+            found += sorted(Path(root).glob(files))
+    return found
 
 
-def _make_room(top: Path) -> None:
-    if top.is_dir():
-        old = sorted(top.iterdir(), key=lambda f: f.stat().st_mtime, reverse=True)
-        for folder in old[_KEPT:]:
-            shutil.rmtree(folder, ignore_errors=True)
+class _MakesRoom(event.Listener):
+    """Deletes the folders of older sources when something is compiled.
+
+    Not before: an import that compiles nothing leaves them alone.
+    """
+
+    def on_start(self, _: event.Event) -> None:
+        own = Path(numba.config.CACHE_DIR)  # type: ignore[attr-defined]
+        # Another process may be doing the same.
+        with contextlib.suppress(OSError):
+            others = [folder for folder in own.parent.iterdir() if folder != own]
+            others.sort(key=lambda folder: folder.stat().st_mtime, reverse=True)
+            for folder in others[_KEPT:]:
+                shutil.rmtree(folder, ignore_errors=True)
+
+    def on_end(self, _: event.Event) -> None:
+        pass
+
+
+numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
+event.register("numba:compile", _MakesRoom())  # type: ignore[no-untyped-call]

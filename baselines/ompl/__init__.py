@@ -36,3 +36,13 @@ asks a ``MotionValidator`` written in Python for that part. They would be other 
 Not bound in the wheel 2.0.1: AIT*, EIT*, ABIT*, RRT#, RRTX, LazyPRM, LazyPRM*, SPARS, CForest,
 TRRT, LazyRRT, LBTRRT, EST, BiEST, SBL, STRIDE, PDST.
 """
+
+from suite.errors import PluginError
+
+try:
+    import ompl  # noqa: F401
+except ModuleNotFoundError as error:
+    raise PluginError(
+        "it needs the package ompl, which is made for Python 3.11 to 3.13. "
+        "Install kbga-bench for one of these"
+    ) from error

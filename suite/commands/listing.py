@@ -1,19 +1,9 @@
-"""What there is: scenes, planners and matrices, as plain data for people and programs."""
+"""What there is: scenes, planners and matrices, as plain data for people and programs.
+
+Each list imports what it needs by itself: of the matrices it takes no library but the reader.
+"""
 
 from typing import Any
-
-from suite.harness.matrix import load_matrix, matrix_file, matrix_names
-from suite.plugins.discovery import available_planners
-from suite.scenes.catalogue import (
-    aligned_names,
-    dynamic_names,
-    generated_names,
-    load_scene,
-    scene_file,
-    scene_names,
-)
-from suite.scenes.moving import parse_moving_name
-from suite.scenes.scattered import parse_scattered_name
 
 
 def scenes_listing() -> list[dict[str, Any]]:
@@ -23,6 +13,10 @@ def scenes_listing() -> list[dict[str, Any]]:
     Of generated scenes it says what their names say: to draw them all takes seconds.
     Controls come last: scenes as they were once drawn, with corners on many lattices.
     """
+    from suite.scenes.catalogue import aligned_names, dynamic_names, generated_names, scene_names
+    from suite.scenes.moving import parse_moving_name
+    from suite.scenes.scattered import parse_scattered_name
+
     rows = [_listed(name) for name in (*scene_names(), *dynamic_names())]
     controls = [_listed(name) for name in aligned_names()]
     for name in generated_names():
@@ -35,6 +29,8 @@ def scenes_listing() -> list[dict[str, Any]]:
 
 def _listed(name: str) -> dict[str, Any]:
     """A scene of the catalogue that is a file."""
+    from suite.scenes.catalogue import aligned_names, load_scene, scene_file
+
     scene = load_scene(name)
     return {
         "name": name,
@@ -61,6 +57,8 @@ def scene_for_people(row: dict[str, Any]) -> dict[str, Any]:
 
 def planners_listing() -> list[dict[str, Any]]:
     """Each installed planner: name, package and version, whether it can be loaded, abilities."""
+    from suite.plugins.discovery import available_planners
+
     rows: list[dict[str, Any]] = []
     for plugin in available_planners():
         can = plugin.abilities
@@ -104,18 +102,8 @@ def matrix_for_people(row: dict[str, Any]) -> dict[str, Any]:
 
 def matrices_listing() -> list[dict[str, Any]]:
     """Each matrix of the catalogue: name, numbers of scenes, planners, seeds and runs, path."""
-    rows = []
-    for name in matrix_names():
-        matrix = load_matrix(name)
-        rows.append(
-            {
-                "name": name,
-                "description": matrix.description,
-                "scenes": len(matrix.scenes),
-                "planners": len(matrix.variants),
-                "seeds": len(matrix.seeds),
-                "runs": len(matrix.cells()),
-                "path": str(matrix_file(name)),
-            }
-        )
-    return rows
+    from suite.harness.matrix_file import matrix_file, matrix_names, outline
+
+    return [
+        {"name": name, **outline(name), "path": str(matrix_file(name))} for name in matrix_names()
+    ]

@@ -61,7 +61,9 @@ def list_command(
     """
     from suite.commands import listing
 
-    use_plugins(plugin)
+    # To read them loads the plugin interface, which the other lists answer without.
+    if plugin or what is What.PLANNERS:
+        use_plugins(plugin)
     all_of, for_people = {
         What.SCENES: (listing.scenes_listing, listing.scene_for_people),
         What.PLANNERS: (listing.planners_listing, listing.planner_for_people),

@@ -7,7 +7,8 @@ Exact as long as no product overflows or falls below 1e-290: coordinates of scen
 """
 
 import numpy as np
-from numba import njit
+
+from suite.jit import allocating_kernel
 
 # Shewchuk 1997, section 4.3: (3 + 16 eps) eps with eps = 2^-53, bounds the rounding of the
 # determinant below relative to the sum of the magnitudes of its two products.
@@ -15,7 +16,7 @@ ERROR_BOUND = (3.0 + 16.0 * 2.0**-53) * 2.0**-53
 _SPLITTER = 2.0**27 + 1.0
 
 
-@njit(cache=True)
+@allocating_kernel
 def _two_product(a: float, b: float) -> tuple[float, float]:
     """A * b as an unevaluated sum of two floats (Dekker 1971); exact."""
     product = a * b
@@ -31,7 +32,7 @@ def _two_product(a: float, b: float) -> tuple[float, float]:
     return product, a_low * b_low - error
 
 
-@njit(cache=True)
+@allocating_kernel
 def _grow(expansion: np.ndarray, size: int, b: float) -> int:
     """Add b to a nonoverlapping expansion in place, without error (Shewchuk, theorem 10)."""
     q = b
@@ -45,7 +46,7 @@ def _grow(expansion: np.ndarray, size: int, b: float) -> int:
     return size + 1
 
 
-@njit(cache=True)
+@allocating_kernel
 def _exact_sign(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     """Sign of the determinant, from its six products expanded exactly."""
     expansion = np.empty(12, dtype=np.float64)
@@ -65,7 +66,7 @@ def _exact_sign(ax: float, ay: float, bx: float, by: float, cx: float, cy: float
     return 0
 
 
-@njit(cache=True)
+@allocating_kernel
 def _subtraction_is_exact(a: float, b: float) -> bool:
     """Whether a - b was computed without rounding (Knuth's two-difference has no tail)."""
     difference = a - b
@@ -73,7 +74,7 @@ def _subtraction_is_exact(a: float, b: float) -> bool:
     return (a - (difference + virtual)) + (virtual - b) == 0.0
 
 
-@njit(cache=True)
+@allocating_kernel
 def _sign_in_doubt(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     """Exact sign where the filter fails; on its own, so that the compiler inlines the filter."""
     if (
@@ -91,7 +92,7 @@ def _sign_in_doubt(ax: float, ay: float, bx: float, by: float, cx: float, cy: fl
     return _exact_sign(ax, ay, bx, by, cx, cy)
 
 
-@njit(cache=True)
+@allocating_kernel
 def orientation(ax: float, ay: float, bx: float, by: float, cx: float, cy: float) -> int:
     """Side of the directed line a -> b on which c lies: 1 left, -1 right, 0 exactly on it."""
     left = (ax - cx) * (by - cy)

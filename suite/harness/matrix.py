@@ -1,67 +1,31 @@
-"""A matrix: which scenes, planner variants and seeds are to be run, and its expansion into cells.
+"""A matrix: what is to be run, checked, and its expansion into cells."""
 
-The file
---------
-A TOML file::
-
-    name = "walls"
-    description = "What it is for."
-    scenes = ["zigzag", "my_scene.geojson"]  # catalogue names, or paths relative to this file
-    seeds = 20                               # 0 to 19; or a list of seeds
-
-    [limits]                                 # optional; see Limits
-    grace_s = 10
-
-    [[planner]]
-    name = "kbga-small"                      # of the variant; default: the planner's own
-    planner = "kbga"
-    settings = {population_size = 20}        # what is left out keeps its default
-    budget = {generations = 200}             # fields of Budget; none: its own stop
-
-Every query of every scene is run with every variant and every seed.
-
-A scene may be modified, as in ``zigzag@turn=17`` (see :mod:`suite.scenes.modifiers`), and a range
-of twins stands for as many scenes. With a table in place of its name, a scene has seeds of its own,
-so that several twins need not make the matrix as many times as large::
-
-    scenes = ["zigzag", { scene = "zigzag@twin=1..10", seeds = 5 }]
-
-A matrix of simulated runs names worlds. Then every scene is driven through in each of its worlds,
-and the budget is that of each single plan::
-
-    [[world]]
-    name = "fast robot"
-    scenes = ["door"]                        # default: all
-    settings = {speed = 5.0}                 # of WorldSettings; the rest as the scene wants it
-
-    [[planner]]
-    name = "kbga-cold"
-    planner = "kbga"
-    cold = true                              # plan afresh, though it could go on from what it knows
-"""
-
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-from msgspec import Meta, Struct
-
-from suite.errors import ContractError, MatrixError, PluginError, SceneError, did_you_mean
+from suite.errors import ContractError, PluginError, SceneError, did_you_mean
+from suite.harness.matrix_file import (
+    MatrixFile,
+    PlannerEntry,
+    SceneEntry,
+    Source,
+    WorldEntry,
+    matrix_file,
+    read_matrix_file,
+)
 from suite.planner import Budget
-from suite.plugins.discovery import PluginInfo, load_planner, planner_info, planner_names
+from suite.plugins.discovery import PluginInfo, planner_info
 from suite.plugins.settings import make_settings, settings_as_dict
 from suite.scenes.catalogue import has_scene, load_scene
-from suite.scenes.geojson import SUFFIXES
-from suite.scenes.modifiers import MARK, expand_twins, split_modifiers
+from suite.scenes.modifiers import MARK, SUFFIXES, expand_twins, split_modifiers
 from suite.scenes.scene import Scene, scene_fingerprint
 from suite.simulation.record import settings_as_data
 from suite.simulation.settings import world_settings
 from suite.store.record import Cell, World
-from suite.typed import MisfitError, T, dataclass_of, typed
+from suite.typed import MisfitError, T, dataclass_of
 
-FOLDER = Path(__file__).parent / "matrices"
 QUICK_SEEDS = 2
 """Enough to see that every cell works and to have a spread at all."""
 
@@ -187,119 +151,13 @@ class Matrix:
         ]
 
 
-def matrix_names() -> list[str]:
-    """Names of the matrices that ship with the suite.
-
-    Examples
-    --------
-    >>> "paper-static" in matrix_names()
-    True
-    """
-    return sorted(path.stem for path in FOLDER.glob("*.toml"))
-
-
-def matrix_file(name_or_path: str | Path) -> Path:
-    """The file of a matrix of the catalogue, or a file of one's own.
-
-    Raises
-    ------
-    MatrixError
-        If there is none.
-    """
-    path = Path(name_or_path)
-    if str(name_or_path) in matrix_names():
-        return FOLDER / f"{name_or_path}.toml"
-    if path.exists():
-        return path
-    raise MatrixError(
-        f"no matrix '{name_or_path}'. Give a file, or one of: {', '.join(matrix_names())}."
-    )
-
-
-class _Table(Struct, frozen=True, forbid_unknown_fields=True):
-    """Base of the tables of a file: no other keys than these."""
-
-
-_Name = Annotated[str, Meta(min_length=1)]
-_Seed = Annotated[int, Meta(ge=0, description="whole numbers of 0 or more")]
-_Seeds = Annotated[
-    Annotated[int, Meta(ge=1)] | Annotated[list[_Seed], Meta(min_length=1)],
-    Meta(description="a number of seeds, 1 or more, or a list of them"),
-]
-_SceneName = Annotated[_Name, Meta(description="the name or the file of a scene")]
-
-
-class _Scene(_Table, frozen=True):
-    scene: _SceneName
-    seeds: _Seeds | None = None
-
-
-class _World(_Table, frozen=True):
-    name: Annotated[_Name, Meta(description="the world a name, for tables")]
-    scenes: Annotated[list[str], Meta(min_length=1, description="a list of scenes")] | None = None
-    settings: dict[str, Any] = {}
-
-
-class _Planner(_Table, frozen=True):
-    planner: Annotated[
-        _Name, Meta(description="the name of a planner (see `kbga-bench list planners`)")
-    ]
-    name: _Name | None = None
-    settings: dict[str, Any] = {}
-    budget: dict[str, Any] = {}
-    cold: bool = False
-
-
-class _File(_Table, frozen=True):
-    seeds: _Seeds
-    scenes: Annotated[
-        list[_SceneName | _Scene],
-        Meta(
-            min_length=1,
-            description="a list of names, files, or tables { scene = ..., seeds = ... }, "
-            "at least one",
-        ),
-    ]
-    planner: Annotated[list[_Planner], Meta(min_length=1, description="at least one [[planner]]")]
-    world: Annotated[list[_World], Meta(min_length=1, description="at least one [[world]]")] = []
-    name: _Name | None = None
-    description: str = ""
-    limits: dict[str, Any] = {}
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Source:
-    """Where a matrix comes from, for errors.
-
-    file : name of the file.
-    document : what TOML holds there.
-    """
-
-    file: str
-    document: dict[str, Any]
-
-    def error(self, keys: Sequence[str | int], what: str) -> MatrixError:
-        """An error that names the place that some keys lead to, by the names that stand there."""
-        words: list[str] = []
-        place: Any = self.document
-        for key in keys:
-            place = place[key]
-            if isinstance(key, str):
-                words.append(key)
-            else:
-                names = place if isinstance(place, dict) else {}
-                name = names.get("name") or names.get("planner")
-                words[-1] += f" '{name}'" if name else f" {key + 1}"
-        return MatrixError(f"{', '.join([self.file, *words])}: {what}")
-
-
 def load_matrix(name_or_path: str | Path) -> Matrix:
     """Read a matrix and check all of it: every scene loads, every planner takes its settings.
 
     Parameters
     ----------
     name_or_path : str or Path
-        One of :func:`matrix_names`, or a file in the format of this module.
+        One of the catalogue, or a file in the format of :mod:`suite.harness.matrix_file`.
 
     Returns
     -------
@@ -311,11 +169,7 @@ def load_matrix(name_or_path: str | Path) -> Matrix:
         If anything in it can't be run. The message says what, where, and how to mend it.
     """
     path = matrix_file(name_or_path)
-    source = _Source(path.name, _read_toml(path))
-    try:
-        file = typed(source.document, _File)
-    except MisfitError as error:
-        raise source.error(_table_of(error.keys), str(error)) from error
+    source, file = read_matrix_file(path)
     seeds = _seeds(source, (), file.seeds)
     named = _named_scenes(source, file, seeds)
     scenes, sources = _scenes(source, [name for name, _ in named], path.parent)
@@ -333,29 +187,13 @@ def load_matrix(name_or_path: str | Path) -> Matrix:
     )
 
 
-def _read_toml(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise MatrixError(f"{path}: can't be read ({error.strerror}).") from error
-    except UnicodeDecodeError as error:
-        raise MatrixError(f"{path.name}: is not UTF-8 text (byte {error.start}).") from error
-    except tomllib.TOMLDecodeError as error:
-        raise MatrixError(f"{path.name}: not TOML: {error}.") from error
-
-
-def _table_of(keys: tuple[str | int, ...]) -> tuple[str | int, ...]:
-    """The table that a value stands in; the value's own name is in the text of the error."""
-    return keys[:-1] if keys and isinstance(keys[-1], str) else keys
-
-
 def _named_scenes(
-    source: _Source, file: _File, seeds: tuple[int, ...]
+    source: Source, file: MatrixFile, seeds: tuple[int, ...]
 ) -> list[tuple[str, tuple[int, ...]]]:
     """The name or file of each scene as it is written, twins one by one, and its seeds."""
     named = []
     for number, entry in enumerate(file.scenes):
-        scene = _Scene(entry) if isinstance(entry, str) else entry
+        scene = SceneEntry(entry) if isinstance(entry, str) else entry
         keys = ("scenes", number)
         own = seeds if scene.seeds is None else _seeds(source, keys, scene.seeds)
         try:
@@ -366,7 +204,7 @@ def _named_scenes(
 
 
 def _scenes(
-    source: _Source, entries: Sequence[str], folder: Path
+    source: Source, entries: Sequence[str], folder: Path
 ) -> tuple[tuple[Scene, ...], tuple[str, ...]]:
     sources = [_scene_source(entry, folder) for entry in entries]
     scenes = []
@@ -394,7 +232,7 @@ def _scene_source(entry: str, folder: Path) -> str:
 
 
 def _worlds(
-    source: _Source, file: _File, scenes: Sequence[Scene]
+    source: Source, file: MatrixFile, scenes: Sequence[Scene]
 ) -> tuple[tuple[tuple[str, Mapping[str, Any]], ...], ...]:
     """(name, settings) of the worlds of each scene."""
     if not file.world:
@@ -416,7 +254,7 @@ def _worlds(
 
 
 def _scenes_of(
-    world: _World, scenes: Sequence[Scene], source: _Source, keys: Sequence[str | int]
+    world: WorldEntry, scenes: Sequence[Scene], source: Source, keys: Sequence[str | int]
 ) -> Sequence[Scene]:
     if world.scenes is None:
         return scenes
@@ -430,7 +268,7 @@ def _scenes_of(
 
 
 def _seeds(
-    source: _Source, keys: Sequence[str | int], seeds: int | Sequence[int]
+    source: Source, keys: Sequence[str | int], seeds: int | Sequence[int]
 ) -> tuple[int, ...]:
     if isinstance(seeds, int):
         return tuple(range(seeds))
@@ -438,7 +276,7 @@ def _seeds(
     return tuple(seeds)
 
 
-def _variants(source: _Source, file: _File) -> tuple[Variant, ...]:
+def _variants(source: Source, file: MatrixFile) -> tuple[Variant, ...]:
     variants = [
         _variant(entry, source, ("planner", number)) for number, entry in enumerate(file.planner)
     ]
@@ -450,20 +288,16 @@ def _variants(source: _Source, file: _File) -> tuple[Variant, ...]:
     return tuple(variants)
 
 
-def _variant(entry: _Planner, source: _Source, keys: tuple[str | int, ...]) -> Variant:
-    known = planner_names()
-    if entry.planner not in known:
-        raise source.error(
-            keys,
-            f"there is no planner '{entry.planner}'. Installed: {', '.join(known)}; "
-            f"or give its file with --plugin.{did_you_mean(entry.planner, known)}",
-        )
-    # The others are not imported: they bring libraries of their own.
-    plugin = planner_info(entry.planner)
+def _variant(entry: PlannerEntry, source: Source, keys: tuple[str | int, ...]) -> Variant:
+    try:
+        # The others are not imported: they bring libraries of their own.
+        plugin = planner_info(entry.planner)
+    except PluginError as error:
+        raise source.error(keys, str(error)) from error
     settings: Mapping[str, Any] = entry.settings
-    if plugin.available:
+    if plugin.planner is not None:
         try:
-            settings = settings_as_dict(make_settings(load_planner(entry.planner), settings))
+            settings = settings_as_dict(make_settings(plugin.planner, settings))
         except PluginError as error:
             raise source.error((*keys, "settings"), str(error)) from error
     return Variant(
@@ -476,7 +310,7 @@ def _variant(entry: _Planner, source: _Source, keys: tuple[str | int, ...]) -> V
 
 
 def _built(
-    kind: type[T], values: Mapping[str, Any], source: _Source, keys: Sequence[str | int]
+    kind: type[T], values: Mapping[str, Any], source: Source, keys: Sequence[str | int]
 ) -> T:
     """Budget or limits, from the table that some keys lead to."""
     try:
@@ -488,7 +322,7 @@ def _built(
 
 
 def _refuse_twins(
-    source: _Source, what: str, names: Sequence[Any], keys: Sequence[str | int] = ()
+    source: Source, what: str, names: Sequence[Any], keys: Sequence[str | int] = ()
 ) -> None:
     twins = [name for i, name in enumerate(names) if name in names[:i]]
     if twins:

@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import psutil
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 from suite.processes.cores import honest_cores
 
@@ -88,7 +90,7 @@ def installed_versions(roots: Iterable[str]) -> dict[str, str]:
         From name, in lower case with hyphens, to version. What is not installed is not in it.
     """
     versions: dict[str, str] = {}
-    waiting = [_canonical(name) for name in roots]
+    waiting: list[str] = [canonicalize_name(name) for name in roots]
     while waiting:
         name = waiting.pop()
         if name not in versions and (version := package_version(name)) is not None:
@@ -98,15 +100,9 @@ def installed_versions(roots: Iterable[str]) -> dict[str, str]:
 
 
 def _required(name: str) -> list[str]:
-    lines = importlib.metadata.requires(name) or []
-    # "numpy>=2.0; python_version > '3'": the name comes first. A requirement for another system
-    # is not installed here, and so left out by itself.
-    wanted = [re.match(r"[\w.-]+", line) for line in lines if not re.search(r";.*\bextra\b", line)]
-    return [_canonical(found.group()) for found in wanted if found]
-
-
-def _canonical(name: str) -> str:
-    return re.sub(r"[-_.]+", "-", name).lower()
+    wanted = map(Requirement, importlib.metadata.requires(name) or [])
+    here = [one for one in wanted if one.marker is None or one.marker.evaluate({"extra": ""})]
+    return [canonicalize_name(requirement.name) for requirement in here]
 
 
 def package_version(name: str) -> str | None:

@@ -36,6 +36,7 @@ class PluginInfo:
     available : whether it can be loaded.
     reason : "unavailable: ..." and why; None if it is available.
     abilities : what it can do; None if it is not available.
+    planner : its class; None if it is not available.
     """
 
     name: str
@@ -44,6 +45,7 @@ class PluginInfo:
     available: bool
     reason: str | None = None
     abilities: Abilities | None = None
+    planner: type[Planner] | None = dataclasses.field(default=None, repr=False)
 
 
 def planner_names() -> list[str]:
@@ -181,4 +183,4 @@ def _describe(name: str, sources: Sequence[Source]) -> PluginInfo:
         planner = _load(name, sources)
     except PluginError as error:
         return PluginInfo(name, distribution, version, False, f"unavailable: {error}")
-    return PluginInfo(name, distribution, version, True, None, planner.abilities)
+    return PluginInfo(name, distribution, version, True, None, planner.abilities, planner)

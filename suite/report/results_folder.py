@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from suite.errors import KbgaBenchError, StoreError
 from suite.report.all_tables import all_tables
-from suite.report.export.files import export_rows, made_folder
+from suite.report.export.files import export_rows, made_folder, need_pyarrow
 from suite.report.figures.comparison import comparison_figures
 from suite.report.figures.convergence import convergence_figures
 from suite.report.figures.overview import overview_figures
@@ -87,6 +87,7 @@ def write_results(
     KbgaBenchError
         If the store holds no runs, a scene has changed since, or a file can't be written.
     """
+    need_pyarrow()
     runs = read_runs(store)
     if runs.empty:
         raise StoreError(f"{store}: it holds no runs yet. `kbga-bench run` fills it.")

@@ -15,8 +15,8 @@ import os
 from pathlib import Path
 
 from suite.errors import SceneError, did_you_mean
-from suite.scenes.geojson import SUFFIXES, read_scene
-from suite.scenes.modifiers import parse_modifiers, split_modifiers
+from suite.scenes.geojson import read_scene
+from suite.scenes.modifiers import SUFFIXES, parse_modifiers, split_modifiers
 from suite.scenes.moving import moving, moving_name, parse_moving_name
 from suite.scenes.scattered import parse_scattered_name, scattered, scattered_name
 from suite.scenes.scene import Scene, make_scene

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from suite.geometry.kernels import ObstacleArrays, segment_enters
 from suite.geometry.predicates import orientation
+from suite.jit import allocating_kernel
 from suite.scenes.scene import Query, Scene
 
 
@@ -88,7 +88,7 @@ def path_length(path: NDArray[np.float64]) -> float:
     return float(np.hypot(*np.diff(path, axis=0).T).sum())
 
 
-@njit(cache=True)
+@allocating_kernel
 def _is_tangent(px: float, py: float, corners: np.ndarray, i: int) -> bool:
     """Whether the line from p to corner i leaves the corner's solid on one side."""
     x, y = corners[i, 0], corners[i, 1]
@@ -97,7 +97,7 @@ def _is_tangent(px: float, py: float, corners: np.ndarray, i: int) -> bool:
     return first * second >= 0
 
 
-@njit(cache=True)
+@allocating_kernel
 def _solid_side(px: float, py: float, corners: np.ndarray, i: int) -> int:
     """Side of a tangent line p -> corner i on which the corner's solid lies: 1 left, -1 right."""
     x, y = corners[i, 0], corners[i, 1]
@@ -105,7 +105,7 @@ def _solid_side(px: float, py: float, corners: np.ndarray, i: int) -> int:
     return side if side != 0 else orientation(px, py, x, y, corners[i, 4], corners[i, 5])
 
 
-@njit(cache=True)
+@allocating_kernel
 def _turns_around(
     px: float, py: float, side: int, corners: np.ndarray, i: int, qx: float, qy: float
 ) -> bool:
@@ -125,7 +125,7 @@ def _turns_around(
     )
 
 
-@njit(cache=True)
+@allocating_kernel
 def _search(
     sx: float, sy: float, gx: float, gy: float, corners: np.ndarray, arrays: ObstacleArrays
 ) -> tuple[np.ndarray, int]:
@@ -176,7 +176,7 @@ def _search(
     return np.empty(0, dtype=np.int64), checks
 
 
-@njit(cache=True)
+@allocating_kernel
 def _trace_back(parent: np.ndarray, start: int, goal: int) -> np.ndarray:
     count = 1
     node = goal

@@ -50,10 +50,10 @@ from shapely.geometry import Polygon, mapping
 from suite.errors import SceneError
 from suite.geometry.tolerances import LARGEST
 from suite.scenes.dynamics import as_properties, parse_dynamics
+from suite.scenes.modifiers import SUFFIXES
 from suite.scenes.scene import DEFAULT_QUERY, Obstacle, Scene, make_scene
 
 ROLES = ("workspace", "obstacle", "start", "goal")
-SUFFIXES = (".geojson", ".json")
 
 
 def read_scene(path: Path, *, inflate: float = 0.0) -> Scene:

@@ -14,7 +14,6 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
-from numba import njit
 from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon
 
@@ -25,6 +24,7 @@ from suite.geometry.kernels import (
     segment_enters,
 )
 from suite.geometry.predicates import orientation
+from suite.jit import allocating_kernel
 from suite.scenes.scene import Query, Scene
 
 Word = tuple[int, ...]
@@ -295,7 +295,7 @@ def _letters(a: NDArray[np.float64], b: NDArray[np.float64], rays: Sequence[_Ray
     return tuple(-ray.letter for ray in reversed(crossed))
 
 
-@njit(cache=True)
+@allocating_kernel
 def _is_tangent(corners: np.ndarray, i: int, qx: float, qy: float) -> bool:
     """Whether the way from corner i to q is tangent to the corner's solid, and not into it."""
     if i >= corners.shape[0]:
@@ -307,7 +307,7 @@ def _is_tangent(corners: np.ndarray, i: int, qx: float, qy: float) -> bool:
     return first * second >= 0
 
 
-@njit(cache=True)
+@allocating_kernel
 def _visible_pairs(xy: np.ndarray, corners: np.ndarray, arrays: ObstacleArrays) -> np.ndarray:
     """Which nodes see each other along a line that is tangent at both: (n, n) bool."""
     n = xy.shape[0]

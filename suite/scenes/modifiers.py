@@ -30,8 +30,9 @@ import numpy as np
 
 from suite.errors import SceneError, did_you_mean
 from suite.geometry.tolerances import LARGEST
-from suite.scenes.geojson import SUFFIXES
 
+SUFFIXES = (".geojson", ".json")
+"""Of scene files, by which a name is told from a path."""
 MARK = "@"
 KEYS = ("turn", "shift", "scale", "twin")
 FURTHEST = 1.0

@@ -182,6 +182,6 @@ def test_kernels_are_kept_with_these_sources_when_the_face_is_imported_first(tmp
         "print(next_children._cache.cache_path)"
     )
     where = in_a_new_process(code, NUMBA_CACHE_DIR=str(tmp_path), NUMBA_DISABLE_JIT="0")
-    code = "from suite.jit import use_cache_of_these_sources as use; print(use())"
+    code = "from suite.jit import cache_folder; print(cache_folder())"
     assert Path(where).is_relative_to(in_a_new_process(code, NUMBA_CACHE_DIR=str(tmp_path)))
     assert Path(where).is_relative_to(tmp_path)

@@ -1,6 +1,7 @@
 """The rows of a store as files that any data tool reads."""
 
 from collections.abc import Callable, Collection
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Final
 
@@ -48,6 +49,8 @@ def export_rows(
     StoreError
         If the store can't be read, or the files can't be written.
     """
+    if kind == "parquet":
+        need_pyarrow()
     readers: dict[str, Callable[[Path], pd.DataFrame]] = {
         "runs": read_runs,
         "events": read_events,
@@ -74,6 +77,21 @@ def export_rows(
             raise StoreError(f"{file}: can't be written ({error.strerror}).") from error
         files.append(file)
     return files
+
+
+def need_pyarrow() -> None:
+    """Say how to install what writes parquet, if it is missing.
+
+    Raises
+    ------
+    StoreError
+        If it is. It is large, and all but ``results`` and ``export`` do without.
+    """
+    if find_spec("pyarrow") is None:
+        raise StoreError(
+            "parquet needs the package pyarrow. Install it with: "
+            'pip install "kbga-bench[parquet]"; or use `export --to csv`, which does without.'
+        )
 
 
 def paths_frame(store: Path) -> pd.DataFrame:

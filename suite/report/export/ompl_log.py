@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from ompl.tools import computeViews, readBenchmarkLog
 
 from suite.errors import StoreError
 from suite.planner import PlanStatus
@@ -108,8 +107,15 @@ def write_planner_arena(store: Path, file: Path) -> Path:
     Raises
     ------
     StoreError
-        As for :func:`write_ompl_logs`, or if the file is there.
+        As for :func:`write_ompl_logs`, or if the file is there, or OMPL is not.
     """
+    try:
+        from ompl.tools import computeViews, readBenchmarkLog
+    except ModuleNotFoundError as error:
+        raise StoreError(
+            f"{file}: OMPL makes it, and the package ompl is made for Python 3.11 to 3.13. "
+            "Install kbga-bench for one of these, or export ompl-log."
+        ) from error
     if file.exists():
         raise StoreError(f"{file}: is there already. Name a new file.")
     made_folder(file.parent)

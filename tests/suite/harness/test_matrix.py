@@ -4,7 +4,8 @@ import tomllib
 import pytest
 
 from suite.errors import MatrixError
-from suite.harness.matrix import FOLDER, Limits, load_matrix, matrix_names
+from suite.harness.matrix import Limits, load_matrix
+from suite.harness.matrix_file import FOLDER, matrix_names, outline
 from suite.planner import Budget
 from suite.plugins.discovery import available_planners
 from suite.scenes.catalogue import scene_names
@@ -112,8 +113,16 @@ def test_a_list_of_seeds_is_taken_as_it_is(written):
     assert matrix.seeds == (5, 2)
 
 
-def test_the_paper_matrix_is_in_the_catalogue():
-    assert "paper-static" in matrix_names()
+@pytest.mark.parametrize("name", matrix_names())
+def test_the_outline_of_a_matrix_counts_what_would_be_run(name):
+    matrix = load_matrix(name)
+    assert outline(name) == {
+        "description": matrix.description,
+        "scenes": len(matrix.scenes),
+        "planners": len(matrix.variants),
+        "seeds": len(matrix.seeds),
+        "runs": len(matrix.cells()),
+    }
 
 
 def test_settings_are_completed_with_defaults_so_that_keys_do_not_depend_on_how_they_are_written(
