@@ -8,7 +8,7 @@ import pandas as pd
 from suite.report.paper.contrasts import contrast_table
 from suite.report.paper.tables import COST_NOTE, paper_tables
 from suite.report.paper.verdicts import Rows, verdict_table
-from suite.report.rows import newest
+from suite.report.rows import is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import dropped_note, fair, joined
 from suite.report.table import Table
@@ -17,7 +17,7 @@ from suite.report.tables.alignment import alignment_tables, without_repeats
 from suite.report.tables.budgets import budget_tables
 from suite.report.tables.differences import difference_tables
 from suite.report.tables.ranking import ranking_tables
-from suite.report.tables.simulated import is_simulated, simulated_tables
+from suite.report.tables.simulated import simulated_tables
 from suite.report.tables.statistics import check_reference, statistics_tables
 from suite.report.tables.studies import study_tables
 from suite.report.tables.summary import summary_tables

@@ -25,13 +25,11 @@ from suite.report.figures.scene import LINES, plot_scene_results, save
 from suite.report.figures.simulation import plot_snapshots
 from suite.report.figures.studies import study_figures
 from suite.report.paper.pictures import paper_pictures
-from suite.report.rows import newest
+from suite.report.rows import feasible, is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import fair
 from suite.report.table import SUFFIX, Format, Table, render
 from suite.report.tables.alignment import without_repeats
-from suite.report.tables.simulated import is_simulated
-from suite.report.tables.summary import feasible
 from suite.scenes.catalogue import load_scene
 from suite.scenes.scene import Query, Scene, scene_fingerprint
 from suite.simulation.record import from_data

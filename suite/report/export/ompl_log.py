@@ -21,8 +21,7 @@ from ompl.tools import computeViews, readBenchmarkLog
 from suite.errors import StoreError
 from suite.planner import PlanStatus
 from suite.report.export.files import made_folder
-from suite.report.rows import newest
-from suite.report.tables.simulated import is_simulated
+from suite.report.rows import is_simulated, newest
 from suite.store.read import read_events, read_runs, read_sessions
 
 STATUSES = tuple(status.value for status in PlanStatus)

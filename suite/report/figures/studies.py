@@ -18,7 +18,7 @@ from matplotlib.ticker import FixedLocator, NullLocator
 
 from suite.report.figures.scene import LINES
 from suite.report.tables.ablation import NOTHING, ablation
-from suite.report.tables.compared import glance
+from suite.report.tables.glance import glance
 from suite.report.tables.studies import RESOLUTION, STUDIES, Study, obstacles, of_kbga_plus, sweep
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "<", "*")

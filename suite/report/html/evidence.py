@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from suite.planner import Snapshot
 from suite.report.all_tables import all_tables
 from suite.report.figures.panels import numbered
-from suite.report.rows import newest
+from suite.report.rows import is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import fair
 from suite.report.table import Table
-from suite.report.tables.simulated import is_simulated
 from suite.store.read import (
     read_conflicts,
     read_events,

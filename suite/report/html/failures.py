@@ -5,8 +5,8 @@ from typing import Any
 import pandas as pd
 
 from suite.planner import PlanStatus
+from suite.report.rows import places
 from suite.report.table import Table
-from suite.report.tables.compared import places
 
 REASONS_AT_MOST = 30
 """Told in full; of more there is the last line."""

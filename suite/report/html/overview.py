@@ -12,7 +12,7 @@ from suite.report.html.cells import Sheet, sheet
 from suite.report.html.evidence import Evidence
 from suite.report.html.shades import shaded
 from suite.report.table import Table
-from suite.report.tables.compared import at_a_glance
+from suite.report.tables.glance import at_a_glance
 from suite.report.tables.summary import summary
 
 GAP_NOTE = (

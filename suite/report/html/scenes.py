@@ -11,7 +11,7 @@ from suite.errors import KbgaBenchError
 from suite.report.html.appearance import PLANNERS_AT_MOST, Appearance, appearance
 from suite.report.html.drawing import Drawing, draw
 from suite.report.html.evidence import Evidence
-from suite.report.tables.summary import feasible
+from suite.report.rows import feasible
 from suite.scenes.catalogue import load_scene
 from suite.scenes.scene import scene_fingerprint
 

@@ -20,6 +20,7 @@ from suite.paper.reported import (
     best_reported,
     find,
 )
+from suite.report.rows import feasible
 from suite.report.statistics.agreement import (
     AGREES,
     DIFFERS,
@@ -35,7 +36,6 @@ from suite.report.statistics.generations import clock_columns, cut_off, generati
 from suite.report.statistics.inference import Array
 from suite.report.table import Table
 from suite.report.tables.ablation import CLASSICAL, NOTHING, SPECIALISED, ablated
-from suite.report.tables.summary import feasible
 
 RUNS = 20
 """Of the paper, in each of its comparisons."""

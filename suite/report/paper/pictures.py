@@ -25,7 +25,7 @@ from suite.report.figures.scene import (
     draw_obstacles,
     draw_room,
 )
-from suite.report.tables.summary import feasible
+from suite.report.rows import feasible
 from suite.scenes.scene import Query, Scene
 
 EVOLUTIONS = {"unstructured": 6, "maze": 7, "zigzag": 8, "double_u": 9}

@@ -6,9 +6,9 @@ from typing import Any
 import pandas as pd
 
 from suite.paper.reported import KBGA, KBGA_PLUS, PLAIN_GA, Reported, best_reported, find, reported
+from suite.report.rows import feasible
 from suite.report.statistics.generations import COUNTED, clock_columns, cut_off, generations_column
 from suite.report.table import Table
-from suite.report.tables.summary import feasible
 
 TIME_NOTE = (
     "The paper's times are from a Pentium III at 933 MHz and can't be compared as such: only their "

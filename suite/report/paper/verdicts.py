@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 
 from suite.paper.reported import KBGA, KBGA_PLUS, PLAIN_GA, Reported, best_reported, reported
+from suite.report.rows import feasible, settings_of
 from suite.report.statistics.agreement import (
     AGREES,
     DIFFERS,
@@ -30,9 +31,7 @@ from suite.report.statistics.agreement import (
 from suite.report.statistics.generations import clock_columns, cut_off, generations_column
 from suite.report.statistics.inference import Array
 from suite.report.table import Table
-from suite.report.tables.compared import settings_of
 from suite.report.tables.simulated import UNKNOWN, reactions
-from suite.report.tables.summary import feasible
 
 BETTER, WORSE = "better", "worse"
 SETTING, NO_DATA = "setting", "no data"

@@ -12,9 +12,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from suite.report.rows import feasible, places
 from suite.report.statistics.clock import WALL, by_the_clock
-from suite.report.tables.compared import places
-from suite.report.tables.summary import feasible
 
 Array = NDArray[np.float64]
 

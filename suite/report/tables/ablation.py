@@ -15,20 +15,12 @@ from suite.paper.reported import (
     WITHOUT_CROSSOVER_AND_MUTATION,
     find,
 )
+from suite.report.rows import feasible, places, settings_of
 from suite.report.statistics.generations import cut_off
 from suite.report.table import Table
-from suite.report.tables.compared import (
-    NOTE,
-    PENALTIES_NOTE,
-    RATIO_NOTE,
-    at_a_glance,
-    compare,
-    families,
-    places,
-    settings_of,
-)
+from suite.report.tables.compared import NOTE, PENALTIES_NOTE, RATIO_NOTE, compare, families
+from suite.report.tables.glance import at_a_glance
 from suite.report.tables.studies import GLANCE_NOTE
-from suite.report.tables.summary import feasible
 
 OPERATORS = ("crossover", "mutation", "repair", "deletion", "improvement")
 NOTHING = "nothing"

@@ -11,10 +11,9 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
+from suite.report.rows import feasible, places
 from suite.report.statistics.inference import LEVEL
 from suite.report.table import Table
-from suite.report.tables.compared import places
-from suite.report.tables.summary import feasible
 from suite.scenes.catalogue import aligned_names
 from suite.scenes.modifiers import MARK
 

@@ -12,7 +12,7 @@ import pandas as pd
 from suite.report.statistics.anytime import Array, Steps, gap_at, on_clock
 from suite.report.statistics.clock import joined, untimed_note
 from suite.report.table import Table
-from suite.report.tables.compared import SIDE_BY_SIDE, at_a_glance
+from suite.report.tables.glance import SIDE_BY_SIDE, at_a_glance
 from suite.report.tables.targets import medians
 
 BUDGETS_S = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0)

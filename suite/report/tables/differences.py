@@ -10,9 +10,8 @@ from typing import Any
 import pandas as pd
 
 from suite.paper.reported import KBGA, KBGA_PLUS
+from suite.report.rows import feasible, settings_of
 from suite.report.table import Table
-from suite.report.tables.compared import settings_of
-from suite.report.tables.summary import feasible
 
 NOTE = (
     "One setting at a time: in the upper rows KBGA takes it from KBGA-plus, in the lower ones "

@@ -10,9 +10,10 @@ from typing import Any
 import pandas as pd
 
 from suite.paper.reported import KBGA, find
+from suite.report.rows import feasible
 from suite.report.statistics.clock import by_the_clock, joined, untimed_note
 from suite.report.table import Table
-from suite.report.tables.summary import feasible, spread
+from suite.report.tables.summary import spread
 
 GROUP = ["scene", "query", "world", "variant"]
 
@@ -53,11 +54,6 @@ CHANGES = (
 
 UNCHANGED_M = 0.01
 """A path that stays may still be polished by so much, metres."""
-
-
-def is_simulated(runs: pd.DataFrame) -> "pd.Series[Any]":
-    """Which rows are of simulated runs."""
-    return runs["world"].notna()
 
 
 def simulated_tables(

@@ -29,7 +29,7 @@ from suite.report.statistics.inference import (
     sign_test,
 )
 from suite.report.table import Table
-from suite.report.tables.compared import SIDE_BY_SIDE, at_a_glance
+from suite.report.tables.glance import SIDE_BY_SIDE, at_a_glance
 
 REFERENCE = "kbga"
 """The planner that the others are compared with, unless another one is asked for; the first one

@@ -10,19 +10,17 @@ import numpy as np
 import pandas as pd
 
 from suite.paper.reported import KBGA, KBGA_PLUS, PLAIN_GA, find
+from suite.report.rows import feasible, places, settings_of
 from suite.report.table import Table
 from suite.report.tables.compared import (
     NOTE,
     PENALTIES_NOTE,
     RATIO_NOTE,
-    at_a_glance,
     compare,
     families,
-    places,
-    settings_of,
     whole_where_whole,
 )
-from suite.report.tables.summary import feasible
+from suite.report.tables.glance import at_a_glance
 
 GLANCE_NOTE = (
     "Mean gap to the exact optimum in per cent, over the runs that found a path; how many these "

@@ -10,6 +10,7 @@ from typing import Any
 import pandas as pd
 
 from suite.planner import PlanStatus
+from suite.report.rows import feasible
 from suite.report.statistics.clock import joined, untimed_note
 from suite.report.table import Table
 
@@ -99,11 +100,6 @@ def _counted(runs: pd.DataFrame) -> str:
         f"{len(runs)} runs: {solved} solved, {len(runs) - solved} without path, of these {failed} "
         "failed."
     )
-
-
-def feasible(runs: pd.DataFrame) -> pd.DataFrame:
-    """The runs that ended with a path that the referee accepted."""
-    return runs[(runs["status"] == str(PlanStatus.SOLVED)) & runs["cost"].notna()]
 
 
 def spread(values: "pd.Series[Any]", what: str, unit: str = "") -> dict[str, float]:

@@ -13,7 +13,7 @@ import pandas as pd
 from suite.report.statistics.anytime import Steps, first_within
 from suite.report.statistics.clock import by_the_clock, joined, untimed_note
 from suite.report.table import Table
-from suite.report.tables.compared import SIDE_BY_SIDE, at_a_glance
+from suite.report.tables.glance import SIDE_BY_SIDE, at_a_glance
 
 TARGETS = (0.05, 0.02, 0.01, 0.001)
 """Gaps to the optimum."""
