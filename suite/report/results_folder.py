@@ -24,11 +24,13 @@ from suite.report.figures.runtime import runtime_figures
 from suite.report.figures.scene import LINES, plot_scene_results, save
 from suite.report.figures.simulation import plot_snapshots
 from suite.report.figures.studies import study_figures
+from suite.report.formats import render
+from suite.report.kinds import FigureFormat, Part, TableFormat
 from suite.report.paper.pictures import paper_pictures
 from suite.report.rows import feasible, is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import fair
-from suite.report.table import SUFFIX, Format, Table, render
+from suite.report.table import Table
 from suite.report.tables.alignment import without_repeats
 from suite.scenes.catalogue import load_scene
 from suite.scenes.scene import Query, Scene, scene_fingerprint
@@ -47,15 +49,16 @@ from suite.store.read import (
 
 MANIFEST = "manifest.json"
 
-COMPARISONS, PAPER_PICTURES = "comparisons", "paper-pictures"
-"""Names of the pictures that can be left out: how planners compare, and what the paper shows."""
-
 REPLANNING = "replanning"
 """Name of the figure of simulated runs."""
 
 
 def write_results(
-    store: Path, directory: Path, *, leave_out: Collection[str] = (), figures: str = "png"
+    store: Path,
+    directory: Path,
+    *,
+    leave_out: Collection[Part] = (),
+    figures: FigureFormat = FigureFormat.PNG,
 ) -> list[Path]:
     """Make a results folder from a store; the same store gives the same bytes.
 
@@ -68,12 +71,9 @@ def write_results(
     store : Path
     directory : Path
         Made if it is missing; files of the same names are replaced.
-    leave_out : collection of str
-        Rows that are not written, for they are too many (``events``, ``traces``, ``paths``), and
-        pictures (``comparisons``: of how the planners compare; ``paper-pictures``: like those of
-        the paper). The manifest names them.
-    figures : str
-        ``png``, or the vectors ``pdf`` and ``svg``.
+    leave_out : collection of Part
+        Rows that are not written, for they are too many, and pictures. The manifest names them.
+    figures : FigureFormat
 
     Returns
     -------
@@ -92,12 +92,12 @@ def write_results(
     scenes = _scenes(current)
     folder = made_folder(directory)
     tables = read_tables(store)
-    files = write_tables([t for t in tables if not t.detail], folder, Format.MARKDOWN)
-    files += write_tables(tables, folder, Format.CSV)
+    files = write_tables([t for t in tables if not t.detail], folder, TableFormat.MARKDOWN)
+    files += write_tables(tables, folder, TableFormat.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
     shown = fair(without_repeats(current))
     for name, figure in _figures(store, shown, scenes, leave_out):
-        file = folder / f"{name}.{figures}"
+        file = folder / f"{name}{figures.suffix}"
         save(figure, file)
         files.append(file)
     manifest = folder / MANIFEST
@@ -132,7 +132,7 @@ def read_tables(store: Path, reference: str | None = None) -> list[Table]:
     )
 
 
-def write_tables(tables: Sequence[Table], directory: Path, style: Format) -> list[Path]:
+def write_tables(tables: Sequence[Table], directory: Path, style: TableFormat) -> list[Path]:
     """Write each table to a file of its name.
 
     Raises
@@ -143,7 +143,7 @@ def write_tables(tables: Sequence[Table], directory: Path, style: Format) -> lis
     folder = made_folder(directory)
     files = []
     for table in tables:
-        file = folder / f"{table.name}{SUFFIX[style]}"
+        file = folder / f"{table.name}{style.suffix}"
         _write_text(file, render(table, style))
         files.append(file)
     return files
@@ -169,15 +169,15 @@ def _figures(
     store: Path,
     current: pd.DataFrame,
     scenes: list[tuple[Scene, Query]],
-    leave_out: Collection[str],
+    leave_out: Collection[Part],
 ) -> Iterator[tuple[str, Figure]]:
     """The figures that are wanted, each with the name of its file."""
     planned, driven = current[~is_simulated(current)], current[is_simulated(current)]
     paths = read_paths(store)
     yield from study_figures(planned).items()
-    if COMPARISONS not in leave_out:
+    if Part.COMPARISONS not in leave_out:
         yield from _comparisons(steps_of(planned, read_events(store)))
-    if PAPER_PICTURES not in leave_out:
+    if Part.PAPER_PICTURES not in leave_out:
         yield from paper_pictures(planned, paths, read_snapshots(store), scenes).items()
     yield from _scene_figures(planned, paths, scenes)
     if not driven.empty:
@@ -246,7 +246,7 @@ def _manifest(
     runs: pd.DataFrame,
     folder: Path,
     files: Sequence[Path],
-    leave_out: Collection[str],
+    leave_out: Collection[Part],
 ) -> dict[str, Any]:
     sessions = read_sessions(store)
     matrices = list(dict.fromkeys(session["matrix"] for session in sessions))

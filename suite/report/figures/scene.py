@@ -20,9 +20,8 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from suite.errors import KbgaBenchError
+from suite.report.kinds import FigureFormat
 from suite.scenes.scene import Query, Scene
-
-SUFFIXES = (".png", ".pdf", ".svg")
 
 OBSTACLE = "#c8c8c8"
 OBSTACLE_EDGE = "#707070"
@@ -148,7 +147,7 @@ def check_figure_file(file: Path) -> None:
     KbgaBenchError
         If its kind is unknown or its folder is missing.
     """
-    check_file(file, "figures", SUFFIXES)
+    check_file(file, "figures", [kind.suffix for kind in FigureFormat])
 
 
 def check_file(file: Path, what: str, suffixes: Sequence[str]) -> None:

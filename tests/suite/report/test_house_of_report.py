@@ -7,7 +7,7 @@ import pytest
 
 REPORT = Path(__file__).parents[3] / "suite" / "report"
 FLOORS = (
-    {"rows", "table", "formats"},
+    {"kinds", "rows", "table", "formats"},
     {"statistics"},
     {"tables"},
     {"figures"},
