@@ -17,13 +17,15 @@ from suite.report.all_tables import all_tables
 from suite.report.export.files import export_rows, made_folder
 from suite.report.figures.comparison import comparison_figures
 from suite.report.figures.convergence import convergence_figures
+from suite.report.figures.files import save
 from suite.report.figures.overview import overview_figures
 from suite.report.figures.ranks import rank_figures
 from suite.report.figures.replanning import plot_replanning
 from suite.report.figures.runtime import runtime_figures
-from suite.report.figures.scene import LINES, plot_scene_results, save
+from suite.report.figures.scene import plot_scene_results
 from suite.report.figures.simulation import plot_snapshots
 from suite.report.figures.studies import study_figures
+from suite.report.figures.style import HEADING, LINES
 from suite.report.formats import render
 from suite.report.kinds import FigureFormat, Part, TableFormat
 from suite.report.paper.pictures import paper_pictures
@@ -213,7 +215,7 @@ def _snapshot_sheets(runs: pd.DataFrame, store: Path) -> Iterator[tuple[str, Fig
     for (source, world), group in runs.groupby(["scene_source", "world"], sort=False):
         data = read_simulation(store, group["key"].iloc[0])
         figure = plot_snapshots(from_data(load_scene(str(source)), data))
-        figure.suptitle(f"{data['scene']}, {world}: {group['variant'].iloc[0]}", fontsize=11)
+        figure.suptitle(f"{data['scene']}, {world}: {group['variant'].iloc[0]}", fontsize=HEADING)
         yield f"{data['scene']}-{_slug(str(world))}", figure
 
 

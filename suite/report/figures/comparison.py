@@ -8,19 +8,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator
 
-from suite.report.figures.panels import (
+from suite.report.figures.panels import PLANNERS_AT_MOST, Panels, scene_panels, title
+from suite.report.figures.style import (
     LEAST_GAP,
-    PLANNERS_AT_MOST,
-    SMALL,
-    Panels,
+    SMALLEST,
     gap_text,
     legend,
     logarithmic_gaps,
     logarithmic_time,
     look,
     numbered,
-    scene_panels,
-    title,
 )
 from suite.report.statistics.anytime import Array, Steps, final_gaps, groups_of, on_clock
 from suite.report.statistics.clock import WALL, joined, untimed_note
@@ -34,7 +31,7 @@ MANY = 200
 ABOVE = 6.0
 """How far the axis goes on above the largest gap, for runs without path; as far again for words."""
 
-SHARE_TEXT: dict[str, Any] = {"ha": "center", "va": "top", "rotation": 90, "fontsize": SMALL - 1}
+SHARE_TEXT: dict[str, Any] = {"ha": "center", "va": "top", "rotation": 90, "fontsize": SMALLEST}
 
 BOXES_NOTE = (
     "Box: quartiles and median of the runs that found a path; whiskers: the farthest runs within "

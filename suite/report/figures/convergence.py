@@ -7,17 +7,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from suite.report.figures.panels import (
+from suite.report.figures.panels import PANELS_AT_MOST, PLANNERS_AT_MOST, scene_panels, title
+from suite.report.figures.style import (
     LEAST_GAP,
-    PANELS_AT_MOST,
-    PLANNERS_AT_MOST,
     legend,
     logarithmic_gaps,
     logarithmic_time,
     look,
     numbered,
-    scene_panels,
-    title,
 )
 from suite.report.statistics.anytime import Array, Steps, gap_at, groups_of, only
 from suite.report.statistics.clock import WALL, by_the_clock, joined, untimed_note

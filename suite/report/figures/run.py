@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from suite.planner import Snapshot
-from suite.report.figures.scene import plot_run, save
+from suite.report.figures.files import save
+from suite.report.figures.scene import plot_run
 from suite.scenes.catalogue import load_scene
 from suite.scenes.exact import shortest_path
 from suite.store.record import RunRecord

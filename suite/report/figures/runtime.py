@@ -12,7 +12,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suite.report.figures.panels import PLANNERS_AT_MOST, legend, logarithmic_time, look, numbered
+from suite.report.figures.panels import PLANNERS_AT_MOST
+from suite.report.figures.style import HEADING, legend, logarithmic_time, look, numbered, rules
 from suite.report.statistics.anytime import Array, Steps, first_within, on_clock, only
 from suite.report.statistics.clock import joined, untimed_note
 from suite.report.tables.ranking import scene_scores
@@ -81,7 +82,7 @@ def plot_ecdf(steps: Steps) -> Figure:
         _draw_ecdf(axes, reached, variants, named)
         axes.set_xlabel(label)
     panels[0].set_ylabel("share of runs and targets reached")
-    figure.suptitle("How soon runs come near the optimum", fontsize=11)
+    figure.suptitle("How soon runs come near the optimum", fontsize=HEADING)
     scenes = _scenes(with_optimum.runs["place"].nunique())
     note = ECDF_NOTE.format(scenes=scenes, targets=len(TARGETS))
     legend(figure, planners, joined(note, untimed_note(with_optimum.runs)))
@@ -144,14 +145,14 @@ def plot_profile(scores: pd.DataFrame) -> Figure:
     axes.set_ylim(-0.02, 1.03)
     axes.set_xlabel("time, as a multiple of the fastest planner's")
     axes.set_ylabel("share of scenes")
-    figure.suptitle("Performance profile: time to come within 1 % of the optimum", fontsize=11)
+    figure.suptitle("Performance profile: time to come within 1 % of the optimum", fontsize=HEADING)
     legend(figure, planners, PROFILE_NOTE.format(scenes=_scenes(ratios.shape[1])))
     return figure
 
 
 def _logarithmic(axes: Axes, low: float, high: float) -> None:
     logarithmic_time(axes, low, high)
-    axes.grid(alpha=0.3, linewidth=0.5)
+    rules(axes)
 
 
 def _scenes(count: int) -> str:

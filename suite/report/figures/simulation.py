@@ -20,14 +20,17 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 
 from suite.errors import KbgaBenchError
-from suite.report.figures.scene import (
+from suite.report.figures.files import check_file
+from suite.report.figures.scene import draw_ends, draw_room, outline
+from suite.report.figures.style import (
     BEST,
+    LABEL,
+    LINES,
     OBSTACLE,
     OBSTACLE_EDGE,
-    check_file,
-    draw_ends,
-    draw_room,
-    outline,
+    height_for,
+    label_metres,
+    legend_below,
 )
 from suite.simulation.run import Outcome, Simulation
 from suite.simulation.view import Sight, View, update_times, view_at
@@ -67,7 +70,7 @@ LOOKS: dict[Sight, dict[str, Any]] = {
         "linestyle": (0, (3, 2)),
     },
 }
-TRAIL: dict[str, Any] = {"color": "#0072b2", "linestyle": "-"}
+TRAIL: dict[str, Any] = {"color": LINES[1][0], "linestyle": "-"}
 PATH: dict[str, Any] = {"color": BEST, "linestyle": (0, (4, 1.5))}
 ROBOT: dict[str, Any] = {
     "marker": "o",
@@ -76,7 +79,7 @@ ROBOT: dict[str, Any] = {
     "markeredgewidth": 0.5,
     "linestyle": "none",
 }
-HIT: dict[str, Any] = {"marker": "X", "color": "#cc79a7", "markeredgecolor": "black"}
+HIT: dict[str, Any] = {"marker": "X", "color": LINES[3][0], "markeredgecolor": "black"}
 
 
 def plot_snapshots(run: Simulation, most: int = MOST_PANELS) -> Figure:
@@ -98,7 +101,7 @@ def plot_snapshots(run: Simulation, most: int = MOST_PANELS) -> Figure:
     Hu and Yang, Fig. 11 and 12.
     """
     views = [view_at(run, time) for time in snapshot_times(run, most)]
-    columns, height = min(COLUMNS, len(views)), _height_for(run, PANEL)
+    columns, height = min(COLUMNS, len(views)), height_for(run.scene, PANEL)
     rows = -(-len(views) // columns)
     size = (PANEL * max(columns, 2) + 0.5, (height + 0.15) * rows + 0.8)
     figure, grid = plt.subplots(
@@ -109,11 +112,8 @@ def plot_snapshots(run: Simulation, most: int = MOST_PANELS) -> Figure:
     for letter, axes, view in zip(ascii_lowercase, grid.flat, views, strict=False):
         _draw(axes, run, view, scale=0.6)
         # Updates come at round times, but the interval may be any.
-        axes.set_title(f"({letter}) t = {round(view.time, 2):g} s{_end(run, view)}", fontsize=9)
-        axes.tick_params(labelsize=7)
-        axes.set_xlabel("x (m)", fontsize=8)
-        axes.set_ylabel("y (m)", fontsize=8)
-        axes.label_outer(remove_inner_ticks=True)
+        axes.set_title(f"({letter}) t = {round(view.time, 2):g} s{_end(run, view)}", fontsize=LABEL)
+        label_metres(axes)
     _legend(figure, run, views, columns=4 if columns > 2 else 2)
     return figure
 
@@ -195,7 +195,7 @@ def animate(run: Simulation, file: Path) -> None:
     """
     views = [view_at(run, time) for time in frame_times(run)]
     figure, axes = plt.subplots(
-        figsize=(FRAME, _height_for(run, FRAME) + 1.0), layout="constrained"
+        figsize=(FRAME, height_for(run.scene, FRAME) + 1.0), layout="constrained"
     )
 
     def draw(view: View) -> None:
@@ -224,11 +224,6 @@ def animate(run: Simulation, file: Path) -> None:
         raise KbgaBenchError(f"{file}: can't be written ({error.strerror}).") from error
     finally:
         plt.close(figure)
-
-
-def _height_for(run: Simulation, width: float) -> float:
-    xmin, ymin, xmax, ymax = run.scene.bounds
-    return width * min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0)
 
 
 def _end(run: Simulation, view: View) -> str:
@@ -275,11 +270,4 @@ def _legend(figure: Figure, run: Simulation, views: Sequence[View], columns: int
     ]
     if run.hits:
         handles.append(Line2D([], [], markersize=8, linestyle="none", label="hit", **HIT))
-    figure.legend(
-        handles=handles,
-        loc="outside lower center",
-        ncols=columns,
-        handlelength=3.0,
-        frameon=False,
-        fontsize=9,
-    )
+    legend_below(figure, handles=handles, ncols=columns, handlelength=3.0)

@@ -4,7 +4,7 @@ import base64
 from dataclasses import dataclass
 
 from suite.errors import KbgaBenchError
-from suite.report.figures.scene import as_png
+from suite.report.figures.files import as_png
 from suite.report.figures.simulation import plot_snapshots
 from suite.report.html.evidence import Evidence
 from suite.scenes.catalogue import load_scene

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from suite.planner import Snapshot
 from suite.report.all_tables import all_tables
-from suite.report.figures.panels import numbered
+from suite.report.figures.style import numbered
 from suite.report.rows import is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import fair

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from suite.planner import PlanStatus
-from suite.report.figures.panels import LEAST_GAP
+from suite.report.figures.style import LEAST_GAP
 from suite.report.html.cells import Sheet, sheet
 from suite.report.html.evidence import Evidence
 from suite.report.html.shades import shaded

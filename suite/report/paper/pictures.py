@@ -18,13 +18,8 @@ from numpy.typing import NDArray
 
 from suite.paper.reported import KBGA, PLAIN_GA, WITHOUT_CROSSOVER_AND_MUTATION
 from suite.planner import Snapshot
-from suite.report.figures.scene import (
-    LINES,
-    POPULATION,
-    draw_ends,
-    draw_obstacles,
-    draw_room,
-)
+from suite.report.figures.scene import draw_ends, draw_obstacles, draw_room
+from suite.report.figures.style import LABEL, LINES, POPULATION, SMALLEST, height_for, label_metres
 from suite.report.rows import feasible
 from suite.scenes.scene import Query, Scene
 
@@ -107,18 +102,18 @@ def plot_evolution(
     figure, grid = _panels(scene, query, 4)
     first = generations[0]
     grid[0].add_collection(LineCollection(first.paths, colors=POPULATION, linewidths=0.6))
-    grid[0].set_title(f"(a) first population, {len(first.paths)} paths", fontsize=9)
+    grid[0].set_title(f"(a) first population, {len(first.paths)} paths", fontsize=LABEL)
     _draw(grid[1], least_inside(scene, first.paths))
-    grid[1].set_title("(b) the one of it least in obstacles", fontsize=9)
+    grid[1].set_title("(b) the one of it least in obstacles", fontsize=LABEL)
     lines = [
         grid[2].plot(*path.T, color=colour, linestyle=style, linewidth=1.6, label=f"{number}")[0]
         for (number, path), (colour, style) in zip(_milestones(generations), LINES, strict=False)
     ]
-    grid[2].set_title("(c) best paths of generations", fontsize=9)
+    grid[2].set_title("(c) best paths of generations", fontsize=LABEL)
     if lines:
-        grid[2].legend(handles=lines, fontsize=7, framealpha=0.85, handlelength=2.6)
+        grid[2].legend(handles=lines, fontsize=SMALLEST, framealpha=0.85, handlelength=2.6)
     _draw(grid[3], last)
-    grid[3].set_title(f"(d) final path: {cost:.2f} m", fontsize=9)
+    grid[3].set_title(f"(d) final path: {cost:.2f} m", fontsize=LABEL)
     return figure
 
 
@@ -136,7 +131,7 @@ def plot_routes(
     figure, grid = _panels(scene, query, len(best))
     for axes, (name, (path, cost)) in zip(grid, best.items(), strict=False):
         _draw(axes, path)
-        axes.set_title(f"{name}:\n{cost:.2f} m", fontsize=9)
+        axes.set_title(f"{name}:\n{cost:.2f} m", fontsize=LABEL)
     return figure
 
 
@@ -235,10 +230,9 @@ def _best_of(
 
 
 def _panels(scene: Scene, query: Query, count: int) -> tuple[Figure, list[Axes]]:
-    xmin, ymin, xmax, ymax = scene.bounds
     columns = min(count, 2)
     rows = -(-count // columns)
-    height = PANEL * min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0) + HEADS
+    height = height_for(scene, PANEL) + HEADS
     figure, grid = plt.subplots(
         rows, columns, figsize=(PANEL * columns + 0.4, height * rows), layout="constrained",
         sharex=True, sharey=True, squeeze=False,
@@ -249,10 +243,7 @@ def _panels(scene: Scene, query: Query, count: int) -> tuple[Figure, list[Axes]]
         draw_room(axes, scene)
         draw_obstacles(axes, scene, 0.5)
         draw_ends(axes, query, 0.6)
-        axes.tick_params(labelsize=7)
-        axes.set_xlabel("x (m)", fontsize=8)
-        axes.set_ylabel("y (m)", fontsize=8)
-        axes.label_outer(remove_inner_ticks=True)
+        label_metres(axes)
     return figure, list(grid.flat[:count])
 
 

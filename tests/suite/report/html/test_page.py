@@ -15,7 +15,7 @@ from suite.harness.cell import run_cell
 from suite.harness.single import cell_for
 from suite.harness.single_simulation import world_for
 from suite.planner import PlanStatus
-from suite.report.figures.overview import NOTHING
+from suite.report.figures.style import NOTHING
 from suite.report.formats import as_texts
 from suite.report.html.page import write_report
 from suite.report.html.shades import contrast
