@@ -12,7 +12,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from suite.errors import KbgaBenchError, StoreError
+from suite.errors import StoreError, writing
 from suite.report.all_tables import all_tables
 from suite.report.export.files import export_rows, made_folder
 from suite.report.figures.comparison import comparison_figures
@@ -104,7 +104,8 @@ def write_results(
         files.append(file)
     manifest = folder / MANIFEST
     made = _manifest(store, runs, folder, files, leave_out)
-    _write_text(manifest, json.dumps(made, indent=2) + "\n")
+    with writing(manifest):
+        manifest.write_text(json.dumps(made, indent=2) + "\n", encoding="utf-8")
     return [*files, manifest]
 
 
@@ -146,7 +147,8 @@ def write_tables(tables: Sequence[Table], directory: Path, style: TableFormat) -
     files = []
     for table in tables:
         file = folder / f"{table.name}{style.suffix}"
-        _write_text(file, render(table, style))
+        with writing(file):
+            file.write_text(render(table, style), encoding="utf-8")
         files.append(file)
     return files
 
@@ -267,10 +269,3 @@ def _manifest(
             for file in files
         },
     }
-
-
-def _write_text(file: Path, text: str) -> None:
-    try:
-        file.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise KbgaBenchError(f"{file}: can't be written ({error.strerror}).") from error

@@ -18,7 +18,7 @@ import numpy as np
 import pandas as pd
 from ompl.tools import computeViews, readBenchmarkLog
 
-from suite.errors import StoreError
+from suite.errors import StoreError, writing
 from suite.planner import PlanStatus
 from suite.report.export.files import made_folder
 from suite.report.rows import is_simulated, newest
@@ -87,10 +87,8 @@ def write_ompl_logs(store: Path, directory: Path) -> list[Path]:
     for (scene, query), group in runs.groupby(["scene", "query"], sort=False):
         file = folder / f"{_word(scene)}-{_word(query)}.log"
         lines = _log(f"{_word(scene)}-{_word(query)}", group, events, sessions)
-        try:
+        with writing(file, StoreError):
             file.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        except OSError as error:
-            raise StoreError(f"{file}: can't be written ({error.strerror}).") from error
         files.append(file)
     return files
 

@@ -19,8 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 
-from suite.errors import KbgaBenchError
-from suite.report.figures.files import check_file
+from suite.errors import KbgaBenchError, check_file, writing
 from suite.report.figures.scene import draw_ends, draw_room, outline
 from suite.report.figures.style import (
     BEST,
@@ -216,12 +215,10 @@ def animate(run: Simulation, file: Path) -> None:
     writer = kind(fps=SHOWN_PER_SECOND)
     try:
         # Not by FuncAnimation, which draws each frame once more than it writes it.
-        with writer.saving(figure, str(file), FRAME_DPI):
+        with writing(file), writer.saving(figure, str(file), FRAME_DPI):
             for view in frames:
                 draw(view)
                 writer.grab_frame()
-    except OSError as error:
-        raise KbgaBenchError(f"{file}: can't be written ({error.strerror}).") from error
     finally:
         plt.close(figure)
 

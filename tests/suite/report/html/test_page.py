@@ -281,7 +281,7 @@ def test_names_with_signs_of_markup_are_texts(tmp_path):
 
 
 def test_a_file_that_cannot_be_a_page_is_refused_beforehand(store, tmp_path):
-    with pytest.raises(KbgaBenchError, match=r"a report is \.html"):
+    with pytest.raises(KbgaBenchError, match=r"reports are \.html"):
         write_report(store, tmp_path / "x.pdf")
     with pytest.raises(KbgaBenchError, match="there is no folder"):
         write_report(store, tmp_path / "none" / "x.html")
