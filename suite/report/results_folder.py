@@ -34,8 +34,8 @@ from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import fair
 from suite.report.table import Table
 from suite.report.tables.alignment import without_repeats
-from suite.scenes.catalogue import load_scene
-from suite.scenes.scene import Query, Scene, scene_fingerprint
+from suite.scenes.catalogue import scene_as_it_was
+from suite.scenes.scene import Query, Scene
 from suite.simulation.record import from_data
 from suite.store.read import (
     read_events,
@@ -155,18 +155,8 @@ def write_tables(tables: Sequence[Table], directory: Path, style: TableFormat) -
 
 def _scenes(runs: pd.DataFrame) -> list[tuple[Scene, Query]]:
     """Scenes and queries of the runs, as they were when these were made."""
-    pairs = []
     wanted = runs[["scene_source", "query", "scene_hash"]].drop_duplicates()
-    for source, name, fingerprint in wanted.itertuples(index=False):
-        scene = load_scene(source)
-        query = scene.query(name)
-        if scene_fingerprint(scene, query) != fingerprint:
-            raise StoreError(
-                f"{source}: the scene has changed since its rows were made. Run them again into a "
-                "new store, or put the scene back."
-            )
-        pairs.append((scene, query))
-    return pairs
+    return [scene_as_it_was(*names) for names in wanted.itertuples(index=False)]
 
 
 def _figures(
@@ -214,11 +204,12 @@ def _scene_figures(
 
 def _snapshot_sheets(runs: pd.DataFrame, store: Path) -> Iterator[tuple[str, Figure]]:
     """A sheet of the first run of the first planner in each world."""
-    for (source, world), group in runs.groupby(["scene_source", "world"], sort=False):
-        data = read_simulation(store, group["key"].iloc[0])
-        figure = plot_snapshots(from_data(load_scene(str(source)), data))
-        figure.suptitle(f"{data['scene']}, {world}: {group['variant'].iloc[0]}", fontsize=HEADING)
-        yield f"{data['scene']}-{_slug(str(world))}", figure
+    for row in runs.drop_duplicates(["scene_source", "world"]).to_dict("records"):
+        scene, _ = scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])
+        data = read_simulation(store, row["key"])
+        figure = plot_snapshots(from_data(scene, data))
+        figure.suptitle(f"{data['scene']}, {row['world']}: {row['variant']}", fontsize=HEADING)
+        yield f"{data['scene']}-{_slug(row['world'])}", figure
 
 
 def _slug(text: str) -> str:

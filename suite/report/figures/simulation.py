@@ -32,7 +32,7 @@ from suite.report.figures.style import (
     legend_below,
 )
 from suite.simulation.run import Outcome, Simulation
-from suite.simulation.view import Sight, View, update_times, view_at
+from suite.simulation.view import Sight, View, is_turn, update_times, view_at
 
 ANIMATIONS = (".gif", ".mp4")
 
@@ -40,9 +40,6 @@ MOST_PANELS = 12
 COLUMNS = 4
 PANEL = 2.0
 """Width of a panel, inches."""
-
-TURN_M = 1.0
-"""A path ahead that becomes longer or shorter by more is news, metres."""
 
 FRAMES_PER_SECOND = 10
 """Frames for each simulated second, as long as they are not more than MOST_FRAMES."""
@@ -143,16 +140,12 @@ def _with_one_before(times: Sequence[float], event: float) -> list[int]:
 
 def _turns(run: Simulation) -> set[float]:
     """Times of the plans that are longer or shorter than what was left of the plan before."""
-    turns = set()
-    for old, new in pairwise(run.replans):
-        if old.cost is None or new.cost is None:
-            is_turn = (old.cost is None) != (new.cost is None)
-        else:
-            left = old.cost - run.settings.speed * (new.time - old.time)
-            is_turn = abs(new.cost - left) > TURN_M
-        if is_turn:
-            turns.add(new.time)
-    return turns
+    speed = run.settings.speed
+    return {
+        new.time
+        for old, new in pairwise(run.replans)
+        if is_turn(old.cost, new.cost, speed * (new.time - old.time))
+    }
 
 
 def frame_times(run: Simulation) -> list[float]:

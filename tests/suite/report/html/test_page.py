@@ -260,7 +260,7 @@ def test_a_scene_that_changed_or_is_gone_is_told_of_and_not_drawn(tmp_path):
     file = wall_scene(tmp_path / "w.geojson", 7)
     store = write_store(tmp_path / "s.db", [ran(file, "visibility-graph")])
     file.unlink()
-    assert "can't be loaded any more" in report_of(store).text["scenes"]
+    assert "It can't be drawn: " in report_of(store).text["scenes"]
 
 
 def test_rows_of_a_scene_that_changed_since_are_not_drawn_on_it(tmp_path):
