@@ -10,7 +10,7 @@ import pandas as pd
 from tabulate import tabulate
 
 from suite.report.kinds import TableFormat
-from suite.report.table import Table
+from suite.report.table import Kind, Table
 
 HEADER_WIDTH = 7
 NOTE_WIDTH = 80
@@ -20,8 +20,8 @@ ROUNDING = 1e-9
 ROWS_OF_A_PAGE = 40
 """In LaTeX: a table of more goes on on the next page."""
 
-AS_PRINTED = -1
-"""For the paper's own figures: whole, or two digits after the point."""
+DIGITS = {Kind.MEASURE: 2, Kind.COUNT: 1, Kind.TIME: 3, Kind.P_VALUE: 4}
+"""After the point."""
 
 
 def render(table: Table, style: TableFormat) -> str:
@@ -150,9 +150,9 @@ def as_texts(table: Table) -> pd.DataFrame:
     """The cells as they are printed for reading; missing ones are empty."""
     columns = {}
     for name in table.frame.columns:
-        digits = _digits(str(name))
+        kind = table.kind(str(name))
         columns[name] = [
-            table.infinite if _is_infinite(value) else _as_text(value, digits)
+            table.infinite if _is_infinite(value) else _as_text(value, kind)
             for value in table.frame[name]
         ]
     return pd.DataFrame(columns)
@@ -162,18 +162,7 @@ def _is_infinite(value: Any) -> bool:
     return isinstance(value, float) and math.isinf(value)
 
 
-def _digits(column: str) -> int | None:
-    """Digits after the point; None where figures of several quantities share a column."""
-    if column.startswith("paper"):
-        return AS_PRINTED
-    if column.startswith("ours") and "cost" not in column and "gen" not in column:
-        return None
-    if column in ("p", "Holm's p") or column.endswith(" p"):
-        return 4
-    return 3 if column.endswith("s)") else 1 if column.startswith(("gen", "checks")) else 2
-
-
-def _as_text(value: Any, digits: int | None) -> str:
+def _as_text(value: Any, kind: Kind) -> str:
     if _is_missing(value):
         return ""
     if isinstance(value, bool | str) or not isinstance(value, Real):
@@ -182,11 +171,11 @@ def _as_text(value: Any, digits: int | None) -> str:
         return str(value)
     number = float(value)
     number = number if abs(number) > ROUNDING else 0.0
-    if digits == AS_PRINTED:
-        return f"{number:.0f}" if number.is_integer() else f"{number:.2f}"
-    if digits is not None:
+    if kind in DIGITS:
         # Rounding may leave a zero with a sign.
-        return f"{round(number, digits) + 0.0:.{digits}f}"
+        return f"{round(number, DIGITS[kind]) + 0.0:.{DIGITS[kind]}f}"
+    if kind is Kind.PRINTED:
+        return f"{number:.0f}" if number.is_integer() else f"{number:.2f}"
     if number.is_integer() and abs(number) >= 10:
         return f"{number:.0f}"
     # Three significant digits of what is small: times of ours, in the paper's seconds.

@@ -1,11 +1,26 @@
 """A table with its title and its note."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum, auto
 
 import pandas as pd
 
 from suite.errors import KbgaBenchError
+
+
+class Kind(Enum):
+    """What the numbers of a column are: it says how a reader wants them printed."""
+
+    MEASURE = auto()
+    COUNT = auto()
+    """Means and medians of whole numbers."""
+    TIME = auto()
+    P_VALUE = auto()
+    PRINTED = auto()
+    """The paper's own figures, as it prints them."""
+    MIXED = auto()
+    """Several quantities below each other."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -14,11 +29,12 @@ class Table:
 
     name : of its file.
     title : one line above it.
-    frame : DataFrame with one level of columns; the index carries nothing. Columns whose name
-        ends in ``(s)`` or ``(ms)`` hold seconds or milliseconds, in ``(%)`` per cent.
+    frame : DataFrame with one level of columns; the index carries nothing. A column's unit stands
+        in brackets at the end of its name: (m), (%), (s), (ms), (us).
     note : what a reader must know to read it rightly.
     infinite : what is printed for an infinite number; CSV holds ``inf``.
     detail : whether it holds the rows behind another table, too many to be printed among others.
+    kinds : of columns of numbers that are neither times, by their unit, nor plain measures.
     """
 
     name: str
@@ -27,6 +43,12 @@ class Table:
     note: str = ""
     infinite: str = "infinite"
     detail: bool = False
+    kinds: Mapping[str, Kind] = field(default_factory=dict)
+
+    def kind(self, column: str) -> Kind:
+        """What the numbers of a column are."""
+        is_time = column.endswith(("(s)", "(ms)", "(us)"))
+        return self.kinds.get(column, Kind.TIME if is_time else Kind.MEASURE)
 
 
 def named(tables: Sequence[Table], names: Sequence[str]) -> list[Table]:

@@ -20,6 +20,7 @@ from suite.paper.reported import (
     best_reported,
     find,
 )
+from suite.report.paper.tables import kinds_of_sides
 from suite.report.rows import feasible
 from suite.report.statistics.agreement import (
     AGREES,
@@ -104,7 +105,8 @@ def contrast_table(runs: pd.DataFrame) -> Table | None:
     if not rows:
         return None
     frame = pd.DataFrame(rows)
-    return Table("paper-contrasts", "The paper's contrasts, and ours", frame, NOTE)
+    title = "The paper's contrasts, and ours"
+    return Table("paper-contrasts", title, frame, NOTE, kinds=kinds_of_sides(frame))
 
 
 def _ablations(runs: pd.DataFrame) -> Iterator[dict[str, Any]]:

@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 
 from suite.paper.reported import KBGA, KBGA_PLUS, PLAIN_GA, Reported, best_reported, reported
+from suite.report.paper.tables import kinds_of_sides
 from suite.report.rows import feasible, settings_of
 from suite.report.statistics.agreement import (
     AGREES,
@@ -136,7 +137,8 @@ def verdict_table(rows: Rows) -> Table | None:
     if not has_plus:
         frame = frame.drop(columns=f"ours, {KBGA_PLUS}")
     note = f"{_counted(frame, len(found))} {NOTE.format(plus=PLUS_NOTE if has_plus else '')}"
-    return Table("paper-figures", "Every figure of the paper, and ours", frame, note)
+    title = "Every figure of the paper, and ours"
+    return Table("paper-figures", title, frame, note, kinds=kinds_of_sides(frame))
 
 
 def _counted(frame: pd.DataFrame, of: int) -> str:

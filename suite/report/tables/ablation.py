@@ -17,8 +17,8 @@ from suite.paper.reported import (
 )
 from suite.report.rows import feasible, places, settings_of
 from suite.report.statistics.generations import cut_off
-from suite.report.table import Table
-from suite.report.tables.compared import NOTE, PENALTIES_NOTE, RATIO_NOTE, compare, families
+from suite.report.table import Kind, Table
+from suite.report.tables.compared import KINDS, NOTE, PENALTIES_NOTE, RATIO_NOTE, compare, families
 from suite.report.tables.glance import at_a_glance
 from suite.report.tables.studies import GLANCE_NOTE
 
@@ -197,7 +197,8 @@ def ablation_tables(runs: pd.DataFrame, cost_note: str) -> list[Table]:
             f"Verdicts stand in the table of contrasts. {cost_note}"
         )
         title = "Paper's section IV: what the operators contribute"
-        tables.append(Table("paper-ablation", title, beside, note))
+        kinds = {"paper cost mean": Kind.PRINTED, "paper gen mean": Kind.PRINTED}
+        tables.append(Table("paper-ablation", title, beside, note, kinds=kinds))
     title = "KBGA without some of its operators"
     seen = frame.rename(columns={"value": "switched off", "family": "settings"})
     has_plain_ga = PLAIN_GA in set(frame["variant"])
@@ -217,5 +218,5 @@ def ablation_tables(runs: pd.DataFrame, cost_note: str) -> list[Table]:
     ]  # fmt: skip
     ratios = RATIO_NOTE.format(reference="the same settings with nothing switched off")
     note = f"{NOTE} {PENALTIES_NOTE} {ratios}{plain}"
-    tables.append(Table("study-ablation-rows", f"{title}: all measures", seen[columns], note))
-    return tables
+    rows = f"{title}: all measures"
+    return [*tables, Table("study-ablation-rows", rows, seen[columns], note, kinds=KINDS)]

@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from suite.report.rows import feasible
+from suite.report.table import Kind
 
 NOTE = (
     "feasible: runs with a path that the referee accepted. cost, gap, gen to best and cpu to "
@@ -17,6 +18,9 @@ PENALTIES_NOTE = (
     "cost with penalties: the planner's own lowest cost, over all runs, feasible or not."
 )
 RATIO_NOTE = "ratio: of the cpu time to that of {reference}."
+
+KINDS = {"gen to best mean": Kind.COUNT, "checks mean": Kind.COUNT}
+"""Of the columns of :func:`compare`."""
 
 _BUDGET = ["budget_wall_s", "budget_generations", "budget_checks", "budget_cpu_s"]
 

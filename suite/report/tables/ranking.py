@@ -25,7 +25,7 @@ from suite.report.statistics.inference import (
     nemenyi,
     signed_rank,
 )
-from suite.report.table import Table
+from suite.report.table import Kind, Table
 from suite.report.tables.targets import medians
 
 TARGET = 0.01
@@ -211,11 +211,12 @@ def ranking_tables(steps: Steps, reference: str | None = None) -> list[Table]:
     one = reference or (REFERENCE if REFERENCE in names else str(found[0].mean.idxmin()))
     frame = pd.concat([_columns(ranking, one) for ranking in found], axis=1)
     frame = frame.sort_values(found[0].name, kind="stable").rename_axis("planner").reset_index()
+    kinds = {name: Kind.P_VALUE for name in map(str, frame) if name.endswith(" p")}  # see _columns
     title = f"Mean ranks over {_scenes(len(found[0].ranks))}"
     note = " ".join([NOTE, TEST_NOTE.format(one=one), *(_verdict(r, one) for r in found)])
     detailed = scores.assign(**{r.name: _of_rows(scores, r.ranks) for r in found})
     return [
-        Table("ranking", title, frame, note),
+        Table("ranking", title, frame, note, kinds=kinds),
         Table("ranking-rows", "Ranks on each scene", detailed, NOTE, "never", detail=True),
     ]
 

@@ -12,7 +12,7 @@ import pandas as pd
 from suite.paper.reported import KBGA, find
 from suite.report.rows import feasible
 from suite.report.statistics.clock import by_the_clock, joined, untimed_note
-from suite.report.table import Table
+from suite.report.table import Kind, Table
 from suite.report.tables.summary import spread
 
 GROUP = ["scene", "query", "world", "variant"]
@@ -76,13 +76,20 @@ def simulated_tables(
     note = joined(REPLANNING_NOTE, untimed_note(runs))
     tables = [
         Table("simulations", "How the robots fared", how_they_fared(fared), SIMULATION_NOTE),
-        Table("replanning", "How the planners answered", how_they_answered(asked), note),
+        Table(
+            "replanning",
+            "How the planners answered",
+            how_they_answered(asked),
+            note,
+            kinds={"gen per replan": Kind.COUNT},
+        ),
     ]
     timed = asked["latency_s"].where(by_the_clock(asked))
     ours = paper_dynamic(fared, asked.assign(latency_s=timed))
     if not ours.empty:
         title = "The paper's dynamic environments (sections III-D and III-E)"
-        tables.append(Table("paper-dynamic", title, ours, PAPER_NOTE))
+        kinds = {"paper reaction (s)": Kind.PRINTED, "ours reaction (s)": Kind.MIXED}
+        tables.append(Table("paper-dynamic", title, ours, PAPER_NOTE, kinds=kinds))
     return tables
 
 

@@ -28,7 +28,7 @@ from suite.report.statistics.inference import (
     probability_interval,
     sign_test,
 )
-from suite.report.table import Table
+from suite.report.table import Kind, Table
 from suite.report.tables.glance import SIDE_BY_SIDE, at_a_glance
 
 REFERENCE = "kbga"
@@ -273,6 +273,7 @@ def _scene_tables(
         tested,
         " ".join(filter(None, [f"{pair}. Holm's p: {tests}", warning])),
         detail=True,
+        kinds={"p": Kind.P_VALUE, "Holm's p": Kind.P_VALUE},
     )
     if len(scenes) > SIDE_BY_SIDE:
         return [rows]

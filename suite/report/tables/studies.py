@@ -11,8 +11,9 @@ import pandas as pd
 
 from suite.paper.reported import KBGA, KBGA_PLUS, PLAIN_GA, find
 from suite.report.rows import feasible, places, settings_of
-from suite.report.table import Table
+from suite.report.table import Kind, Table
 from suite.report.tables.compared import (
+    KINDS,
     NOTE,
     PENALTIES_NOTE,
     RATIO_NOTE,
@@ -29,6 +30,8 @@ GLANCE_NOTE = (
 TIME_NOTE = (
     "The paper's times are from a Pentium III at 933 MHz: compare the ratios, not the seconds."
 )
+
+PAPER_KINDS = {"paper time (s)": Kind.PRINTED, "paper ratio": Kind.PRINTED}
 
 RESAMPLES = 2000
 """Two digits of a per cent."""
@@ -299,6 +302,7 @@ def _rows_table(study: Study, frame: pd.DataFrame) -> Table:
         f"{study.title}: all measures",
         shown[[c for c in columns if c in shown]],
         " ".join(notes),
+        kinds=KINDS | PAPER_KINDS,
     )
 
 
@@ -348,7 +352,11 @@ def _best_table(runs: pd.DataFrame, study: Study, frame: pd.DataFrame) -> Table:
         f"({RESAMPLES} bootstrap draws). {PENALTIES_NOTE}"
     )
     return Table(
-        f"study-{study.name}-best", f"{study.title}: the best", best_values(runs, study), note
+        f"study-{study.name}-best",
+        f"{study.title}: the best",
+        best_values(runs, study),
+        note,
+        kinds={"paper's best": Kind.PRINTED},
     )
 
 

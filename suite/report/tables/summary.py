@@ -12,7 +12,7 @@ import pandas as pd
 from suite.planner import PlanStatus
 from suite.report.rows import feasible
 from suite.report.statistics.clock import joined, untimed_note
-from suite.report.table import Table
+from suite.report.table import Kind, Table
 
 NARROW = [
     "scene",
@@ -26,6 +26,10 @@ NARROW = [
     "time total median (ms)",
 ]
 """Columns that fit into a terminal and onto a page."""
+
+KINDS = dict.fromkeys(
+    ("gen to best mean", "gen to best SD", "gen total mean", "gen total SD"), Kind.COUNT
+)
 
 WORDS = (
     "solved: with a path that the referee accepts, or with the proof that there is none. without "
@@ -85,9 +89,9 @@ def summary_tables(runs: pd.DataFrame, left_out: int = 0) -> list[Table]:
         note += f" Left out: {left_out} rows of scenes, settings or planners that changed since."
     narrow = frame[[name for name in NARROW if name in frame]]
     return [
-        Table("summary", "Results per scene and planner", narrow, note),
+        Table("summary", "Results per scene and planner", narrow, note, kinds=KINDS),
         Table("summary-rows", "All measures per scene and planner", frame, f"{note} {ROWS_NOTE}",
-              detail=True),
+              detail=True, kinds=KINDS),
     ]  # fmt: skip
 
 

@@ -12,7 +12,7 @@ import pandas as pd
 
 from suite.report.statistics.anytime import Steps, first_within
 from suite.report.statistics.clock import by_the_clock, joined, untimed_note
-from suite.report.table import Table
+from suite.report.table import Kind, Table
 from suite.report.tables.glance import SIDE_BY_SIDE, at_a_glance
 
 TARGETS = (0.05, 0.02, 0.01, 0.001)
@@ -27,6 +27,8 @@ MEASURES = {
     "checks median": ("checks", 1.0),
 }
 """Columns, the clocks that they are read from, and their units."""
+
+KINDS = {"gen median": Kind.COUNT, "checks median": Kind.COUNT}
 
 NOTE = (
     "Medians over all runs: one that never came so near counts as infinitely long, so that "
@@ -114,7 +116,9 @@ def target_tables(steps: Steps) -> list[Table]:
     title = "What it takes to come within a gap of the optimum"
     left_out = untimed_note(steps.runs)
     note = joined(NOTE, left_out)
-    rows = Table("fixed-target-rows", title, frame, note, infinite="never", detail=True)
+    rows = Table(
+        "fixed-target-rows", title, frame, note, infinite="never", detail=True, kinds=KINDS
+    )
     if frame["scene"].nunique() > SIDE_BY_SIDE:
         return [rows]
     glanced = at_a_glance(_with_target_names(frame), ["planner", "within"], _time)

@@ -18,7 +18,7 @@ from suite.report.rows import newest
 from suite.report.statistics.clock import by_the_clock, dropped_note, fair, joined, untimed_note
 from suite.report.statistics.few_runs import too_few
 from suite.report.statistics.inference import LEVEL, REPETITIONS, holm, mann_whitney
-from suite.report.table import Table
+from suite.report.table import Kind, Table
 
 PLACE = ["scene", "query", "world", "variant"]
 
@@ -125,7 +125,8 @@ def compare_versions(
         same = set(old["host"]) == set(new["host"])
         note += TIME_NOTE.format(where="one host" if same else "different hosts")
     counts = {str(word): int(n) for word, n in counted["verdict"].value_counts().items()}
-    return Changes(Table("versions", "What changed", frame, note), counts, _too_few(scores))
+    table = Table("versions", "What changed", frame, note, kinds={"p": Kind.P_VALUE})
+    return Changes(table, counts, _too_few(scores))
 
 
 _TIMES = [measure.name for measure in MEASURES if measure.is_time]

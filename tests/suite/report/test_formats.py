@@ -2,9 +2,9 @@ import pandas as pd
 import pytest
 
 from suite.errors import KbgaBenchError
-from suite.report.formats import render
+from suite.report.formats import as_texts, render
 from suite.report.kinds import TableFormat
-from suite.report.table import Table, named
+from suite.report.table import Kind, Table, named
 
 
 @pytest.fixture
@@ -76,9 +76,19 @@ def test_latex_has_a_less_than_sign_in_every_font():
     assert "p $<$ 0.001" in text
 
 
-def test_small_p_values_keep_their_digits():
-    table = Table("t", "T", pd.DataFrame({"p": [0.00123], "x": [0.00123]}))
-    assert "0.0012" in render(table, TableFormat.MARKDOWN)
+def test_a_column_has_the_digits_of_what_it_is_said_to_be_or_of_its_unit():
+    frame = pd.DataFrame(7.00123, [0], ["p", "x", "gen", "t (ms)", "paper", "ours"])
+    kinds = {
+        "p": Kind.P_VALUE,
+        "gen": Kind.COUNT,
+        "paper": Kind.PRINTED,
+        "ours": Kind.MIXED,
+    }
+    (cells,) = as_texts(Table("t", "T", frame, kinds=kinds)).to_numpy().tolist()
+    assert cells == ["7.0012", "7.00", "7.0", "7.001", "7.00", "7.00"]
+    small = as_texts(Table("t", "T", frame / 10_000, kinds=kinds | {"x": Kind.MIXED}))
+    assert small["p"].tolist() == ["0.0007"]
+    assert small["x"].tolist() == ["0.000700"]
 
 
 def test_tables_are_chosen_by_name_and_an_unknown_name_is_refused(table):
