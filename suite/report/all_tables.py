@@ -10,7 +10,7 @@ from suite.report.paper.tables import COST_NOTE, paper_tables
 from suite.report.paper.verdicts import Rows, verdict_table
 from suite.report.rows import is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
-from suite.report.statistics.clock import dropped_note, fair, joined
+from suite.report.statistics.clock import dropped_note, fair
 from suite.report.table import Table
 from suite.report.tables.ablation import ablation_tables
 from suite.report.tables.alignment import alignment_tables, without_repeats
@@ -22,6 +22,7 @@ from suite.report.tables.statistics import check_reference, statistics_tables
 from suite.report.tables.studies import study_tables
 from suite.report.tables.summary import summary_tables
 from suite.report.tables.targets import target_tables
+from suite.report.words import joined
 
 BOOTSTRAP_SEED = 2004
 """Any will do; the same rows give the same intervals."""

@@ -11,6 +11,7 @@ from tabulate import tabulate
 
 from suite.report.kinds import TableFormat
 from suite.report.table import Kind, Table
+from suite.report.words import fixed
 
 HEADER_WIDTH = 7
 NOTE_WIDTH = 80
@@ -172,8 +173,7 @@ def _as_text(value: Any, kind: Kind) -> str:
     number = float(value)
     number = number if abs(number) > ROUNDING else 0.0
     if kind in DIGITS:
-        # Rounding may leave a zero with a sign.
-        return f"{round(number, DIGITS[kind]) + 0.0:.{DIGITS[kind]}f}"
+        return fixed(number, DIGITS[kind])
     if kind is Kind.PRINTED:
         return f"{number:.0f}" if number.is_integer() else f"{number:.2f}"
     if number.is_integer() and abs(number) >= 10:

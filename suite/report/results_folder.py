@@ -29,7 +29,7 @@ from suite.report.figures.style import HEADING, LINES
 from suite.report.formats import render
 from suite.report.kinds import FigureFormat, Part, TableFormat
 from suite.report.paper.pictures import paper_pictures
-from suite.report.rows import feasible, is_simulated, newest
+from suite.report.rows import cheapest, feasible, is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import fair
 from suite.report.table import Table
@@ -224,15 +224,10 @@ def _best_paths(
     best: dict[str, NDArray[np.float64] | None] = {}
     labels = {}
     for variant, group in runs.groupby("variant", sort=False):
-        name, solved = str(variant), feasible(group)
-        share = f"{len(solved)} of {len(group)} runs"
-        if len(solved):
-            row = solved.sort_values("cost", kind="stable").iloc[0]
-            best[name] = paths[row["key"]]
-            labels[name] = f"{name}: {row['cost']:.2f} m ({share})"
-        else:
-            best[name] = None
-            labels[name] = f"{name}: no path ({share})"
+        name, row = str(variant), cheapest(group)
+        cost = "no path" if row is None else f"{row['cost']:.2f} m"
+        best[name] = None if row is None else paths[row["key"]]
+        labels[name] = f"{name}: {cost} ({len(feasible(group))} of {len(group)} runs)"
     return best, labels
 
 

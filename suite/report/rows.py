@@ -53,6 +53,12 @@ def feasible(runs: pd.DataFrame) -> pd.DataFrame:
     return runs[(runs["status"] == str(PlanStatus.SOLVED)) & runs["cost"].notna()]
 
 
+def cheapest(runs: pd.DataFrame) -> "pd.Series[Any] | None":
+    """The feasible run of the lowest cost, of equal ones the first; None if none is feasible."""
+    ordered = feasible(runs).sort_values("cost", kind="stable")
+    return None if ordered.empty else ordered.iloc[0]
+
+
 def is_simulated(runs: pd.DataFrame) -> "pd.Series[Any]":
     """Which rows are of simulated runs."""
     return runs["world"].notna()

@@ -19,8 +19,10 @@ from suite.report.figures.style import (
     look,
     numbered,
 )
-from suite.report.statistics.anytime import Array, Steps, final_gaps, groups_of, on_clock
-from suite.report.statistics.clock import WALL, joined, untimed_note
+from suite.report.statistics.anytime import Steps, final_gaps, groups_of, on_clock
+from suite.report.statistics.clock import WALL, untimed_note
+from suite.report.statistics.inference import Array
+from suite.report.words import joined
 
 EXACT = "visibility-graph"
 """The exact solver's plugin. Its time is the limit: who needs longer, needs a reason."""

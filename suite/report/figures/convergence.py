@@ -16,8 +16,10 @@ from suite.report.figures.style import (
     look,
     numbered,
 )
-from suite.report.statistics.anytime import Array, Steps, gap_at, groups_of, only
-from suite.report.statistics.clock import WALL, by_the_clock, joined, untimed_note
+from suite.report.statistics.anytime import Steps, gap_at, groups_of, only
+from suite.report.statistics.clock import WALL, by_the_clock, untimed_note
+from suite.report.statistics.inference import Array
+from suite.report.words import joined
 
 POINTS = 160
 """Places on the horizontal axis."""

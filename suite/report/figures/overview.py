@@ -23,8 +23,9 @@ from suite.report.figures.style import (
     separate_cells,
 )
 from suite.report.statistics.anytime import Steps
-from suite.report.statistics.clock import joined, untimed_note
+from suite.report.statistics.clock import untimed_note
 from suite.report.tables.ranking import rankings, scene_scores
+from suite.report.words import joined
 
 PLANNERS_AT_MOST = 40
 SCENES_AT_MOST = 16

@@ -14,9 +14,11 @@ from matplotlib.figure import Figure
 
 from suite.report.figures.panels import PLANNERS_AT_MOST
 from suite.report.figures.style import HEADING, legend, logarithmic_time, look, numbered, rules
-from suite.report.statistics.anytime import Array, Steps, first_within, on_clock, only
-from suite.report.statistics.clock import joined, untimed_note
+from suite.report.statistics.anytime import Steps, first_within, on_clock, only
+from suite.report.statistics.clock import untimed_note
+from suite.report.statistics.inference import Array
 from suite.report.tables.ranking import scene_scores
+from suite.report.words import counted, joined
 
 TARGETS = 10.0 ** np.linspace(0.0, -3.0, 31)
 """Gaps from 100 % to 0.1 %, ten to a decade."""
@@ -83,7 +85,7 @@ def plot_ecdf(steps: Steps) -> Figure:
         axes.set_xlabel(label)
     panels[0].set_ylabel("share of runs and targets reached")
     figure.suptitle("How soon runs come near the optimum", fontsize=HEADING)
-    scenes = _scenes(with_optimum.runs["place"].nunique())
+    scenes = counted(with_optimum.runs["place"].nunique(), "scene")
     note = ECDF_NOTE.format(scenes=scenes, targets=len(TARGETS))
     legend(figure, planners, joined(note, untimed_note(with_optimum.runs)))
     return figure
@@ -146,14 +148,10 @@ def plot_profile(scores: pd.DataFrame) -> Figure:
     axes.set_xlabel("time, as a multiple of the fastest planner's")
     axes.set_ylabel("share of scenes")
     figure.suptitle("Performance profile: time to come within 1 % of the optimum", fontsize=HEADING)
-    legend(figure, planners, PROFILE_NOTE.format(scenes=_scenes(ratios.shape[1])))
+    legend(figure, planners, PROFILE_NOTE.format(scenes=counted(ratios.shape[1], "scene")))
     return figure
 
 
 def _logarithmic(axes: Axes, low: float, high: float) -> None:
     logarithmic_time(axes, low, high)
     rules(axes)
-
-
-def _scenes(count: int) -> str:
-    return f"{count} scene{'s' if count != 1 else ''}"

@@ -18,8 +18,9 @@ from suite.report.figures.runtime import TARGETS
 from suite.report.figures.style import LEAST_GAP, gap_scale, gap_text, plain_number
 from suite.report.html.appearance import PLANNERS_AT_MOST, Appearance, appearance
 from suite.report.html.scenes import SCENES_AT_MOST
-from suite.report.statistics.anytime import Array, Steps, first_within, only
+from suite.report.statistics.anytime import Steps, first_within, only
 from suite.report.statistics.clock import WALL, by_the_clock
+from suite.report.statistics.inference import Array
 
 HIGHEST = 1e6
 """Per cent: stands for no path, above every chart."""

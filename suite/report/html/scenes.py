@@ -11,7 +11,7 @@ from suite.errors import KbgaBenchError
 from suite.report.html.appearance import PLANNERS_AT_MOST, Appearance, appearance
 from suite.report.html.drawing import Drawing, draw
 from suite.report.html.evidence import Evidence
-from suite.report.rows import feasible
+from suite.report.rows import cheapest, feasible
 from suite.scenes.catalogue import scene_as_it_was
 
 SCENES_AT_MOST = 40
@@ -117,8 +117,7 @@ def _best_paths(runs: pd.DataFrame, drawing: Drawing | None, evidence: Evidence)
     widths = np.linspace(WIDEST, THINNEST, max(len(groups), 2)).round(1)
     found = []
     for width, (planner, group) in zip(widths, groups, strict=False):
-        solved = feasible(group).sort_values("cost", kind="stable")
-        best = solved.iloc[0] if len(solved) else None
+        best = cheapest(group)
         path = None if best is None else evidence.paths.get(best["key"])
         found.append(
             BestPath(
@@ -128,7 +127,7 @@ def _best_paths(runs: pd.DataFrame, drawing: Drawing | None, evidence: Evidence)
                 None if path is None or drawing is None else drawing.outline(path),
                 None if best is None else float(best["cost"]),
                 None if best is None or pd.isna(best["gap"]) else float(best["gap"]),
-                len(solved),
+                len(feasible(group)),
                 len(group),
             )
         )

@@ -37,6 +37,7 @@ from suite.report.statistics.generations import clock_columns, cut_off, generati
 from suite.report.statistics.inference import Array
 from suite.report.table import Table
 from suite.report.tables.ablation import CLASSICAL, NOTHING, SPECIALISED, ablated
+from suite.report.words import fixed
 
 RUNS = 20
 """Of the paper, in each of its comparisons."""
@@ -220,8 +221,7 @@ def _why(compared: Compared, ours: float, paper: float, low: float, high: float)
         return "one run has no spread"
     if compared.word == NOT_COMPARABLE:
         return "too wide to tell"
-    # Rounding may leave a zero with a sign.
-    size = f"{round(ours / paper, 2) + 0.0:.2f} of the paper's"
+    size = f"{fixed(ours / paper)} of the paper's"
     if low <= 0.0 <= high:
         return f"not told from none; {size}"
     return f"same sign; {size}" if ours * paper > 0.0 else "the other sign"

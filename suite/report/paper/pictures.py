@@ -20,7 +20,7 @@ from suite.paper.reported import KBGA, PLAIN_GA, WITHOUT_CROSSOVER_AND_MUTATION
 from suite.planner import Snapshot
 from suite.report.figures.scene import draw_ends, draw_obstacles, draw_room
 from suite.report.figures.style import LABEL, LINES, POPULATION, SMALLEST, height_for, label_metres
-from suite.report.rows import feasible
+from suite.report.rows import cheapest, feasible
 from suite.scenes.scene import Query, Scene
 
 EVOLUTIONS = {"unstructured": 6, "maze": 7, "zigzag": 8, "double_u": 9}
@@ -220,11 +220,10 @@ def _best_of(
 ) -> dict[str, tuple[NDArray[np.float64], float]]:
     best = {}
     for variant in variants:
-        solved = feasible(runs[runs["variant"] == variant])
-        if len(solved):
-            row = solved.sort_values("cost", kind="stable").iloc[0]
-            total = int((runs["variant"] == variant).sum())
-            name = f"{variant.removeprefix('kbga-')}, best of {total}"
+        mine = runs[runs["variant"] == variant]
+        row = cheapest(mine)
+        if row is not None:
+            name = f"{variant.removeprefix('kbga-')}, best of {len(mine)}"
             best[name] = (paths[row["key"]], float(row["cost"]))
     return best
 

@@ -33,6 +33,7 @@ from suite.report.statistics.generations import clock_columns, cut_off, generati
 from suite.report.statistics.inference import Array
 from suite.report.table import Table
 from suite.report.tables.simulated import UNKNOWN, reactions
+from suite.report.words import fixed
 
 BETTER, WORSE = "better", "worse"
 SETTING, NO_DATA = "setting", "no data"
@@ -264,8 +265,8 @@ def _is_within(value: float, low: float, high: float) -> bool:
 def _range(figure: Reported, papers: float, low: float, high: float, runs: int) -> str:
     """Where one value of the paper lies beside the range of ours, in the unit of the comparison."""
     if figure.quantity == "cost":
-        papers, low, high = (round(100.0 * value, 2) + 0.0 for value in (papers, low, high))
-        return f"excess {papers:.2f} %, of our {runs} runs {low:.2f} to {high:.2f} %"
+        percent, least, most = (fixed(100.0 * value) for value in (papers, low, high))
+        return f"excess {percent} %, of our {runs} runs {least} to {most} %"
     return f"our {runs} runs: {low:.4g} to {high:.4g}"
 
 
@@ -399,12 +400,10 @@ def _apart(figure: Reported, ours: Sample, paper: Sample, compared: Compared) ->
     if np.isnan(compared.low):
         return "one run has no spread"
     if figure.quantity == "cost":
-        # Rounding may leave a zero with a sign.
         mine, papers, low, high = (
-            round(100.0 * value, 2) + 0.0
-            for value in (ours.mean, paper.mean, compared.low, compared.high)
+            fixed(100.0 * value) for value in (ours.mean, paper.mean, compared.low, compared.high)
         )
-        apart = f"excess {mine:.2f} %, paper's {papers:.2f} %, apart by {low:.2f} to {high:.2f}"
+        apart = f"excess {mine} %, paper's {papers} %, apart by {low} to {high}"
     else:
         apart = f"apart by {compared.low:.1f} to {compared.high:.1f}"
     few = "too wide to tell: " if compared.word == NOT_COMPARABLE else ""

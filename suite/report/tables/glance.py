@@ -5,6 +5,8 @@ from typing import Any
 
 import pandas as pd
 
+from suite.report.words import fixed, of_some
+
 SIDE_BY_SIDE = 12
 """Scenes that a table has room for: of more, there are only the rows."""
 
@@ -48,8 +50,4 @@ def at_a_glance(
 def glance(row: Mapping[Any, Any]) -> str:
     """A row's mean gap, and how many of its runs it is over if not all."""
     runs, found = row["runs"], row["feasible"]
-    if found == 0:
-        return f"0 of {runs}"
-    # Rounding may leave a zero with a sign.
-    gap = f"{round(row['gap mean (%)'], 2) + 0.0:.2f}"
-    return gap if found == runs else f"{gap} ({found} of {runs})"
+    return of_some(fixed(row["gap mean (%)"]), found, runs) if found else f"0 of {runs}"

@@ -11,9 +11,10 @@ import pandas as pd
 
 from suite.paper.reported import KBGA, find
 from suite.report.rows import feasible
-from suite.report.statistics.clock import by_the_clock, joined, untimed_note
+from suite.report.statistics.clock import by_the_clock, untimed_note
 from suite.report.table import Kind, Table
 from suite.report.tables.summary import spread
+from suite.report.words import joined
 
 GROUP = ["scene", "query", "world", "variant"]
 

@@ -11,8 +11,9 @@ import pandas as pd
 
 from suite.planner import PlanStatus
 from suite.report.rows import feasible
-from suite.report.statistics.clock import joined, untimed_note
+from suite.report.statistics.clock import untimed_note
 from suite.report.table import Kind, Table
+from suite.report.words import joined
 
 NARROW = [
     "scene",

@@ -11,9 +11,10 @@ import numpy as np
 import pandas as pd
 
 from suite.report.statistics.anytime import Steps, first_within
-from suite.report.statistics.clock import by_the_clock, joined, untimed_note
+from suite.report.statistics.clock import by_the_clock, untimed_note
 from suite.report.table import Kind, Table
 from suite.report.tables.glance import SIDE_BY_SIDE, at_a_glance
+from suite.report.words import joined, of_some
 
 TARGETS = (0.05, 0.02, 0.01, 0.001)
 """Gaps to the optimum."""
@@ -139,8 +140,7 @@ def _time(row: Mapping[Any, Any]) -> str:
         return f"contended ({share})"
     if np.isinf(row[TIME]):
         return f"never ({share})"
-    time = significant(row[TIME])
-    return time if row["reached"] == row["runs"] else f"{time} ({share})"
+    return of_some(significant(row[TIME]), row["reached"], row["runs"])
 
 
 def significant(value: float) -> str:

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 
 from suite.planner import PlanStatus
 from suite.report.rows import newest
-from suite.report.statistics.clock import by_the_clock, dropped_note, fair, joined, untimed_note
+from suite.report.statistics.clock import by_the_clock, dropped_note, fair, untimed_note
 from suite.report.statistics.few_runs import too_few
 from suite.report.statistics.inference import LEVEL, REPETITIONS, holm, mann_whitney
 from suite.report.table import Kind, Table
+from suite.report.words import joined
 
 PLACE = ["scene", "query", "world", "variant"]
 

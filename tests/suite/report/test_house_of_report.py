@@ -7,7 +7,7 @@ import pytest
 
 REPORT = Path(__file__).parents[3] / "suite" / "report"
 FLOORS = (
-    {"kinds", "rows", "table", "formats"},
+    {"words", "kinds", "rows", "table", "formats"},
     {"statistics"},
     {"tables"},
     {"figures"},
