@@ -25,7 +25,7 @@ from suite.report.figures.runtime import runtime_figures
 from suite.report.figures.scene import plot_scene_results
 from suite.report.figures.simulation import plot_snapshots
 from suite.report.figures.studies import study_figures
-from suite.report.figures.style import HEADING, LINES
+from suite.report.figures.style import LINES, heading
 from suite.report.formats import render
 from suite.report.kinds import FigureFormat, Part, TableFormat
 from suite.report.paper.pictures import paper_pictures
@@ -208,7 +208,7 @@ def _snapshot_sheets(runs: pd.DataFrame, store: Path) -> Iterator[tuple[str, Fig
         scene, _ = scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])
         data = read_simulation(store, row["key"])
         figure = plot_snapshots(from_data(scene, data))
-        figure.suptitle(f"{data['scene']}, {row['world']}: {row['variant']}", fontsize=HEADING)
+        heading(figure, f"{data['scene']}, {row['world']}: {row['variant']}")
         yield f"{data['scene']}-{_slug(row['world'])}", figure
 
 

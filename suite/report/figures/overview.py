@@ -10,18 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from suite.report.figures.style import (
-    DARK_FROM,
-    HEADING,
-    LEAST_GAP,
-    SMALL,
-    SMALLEST,
-    TITLE,
-    colouring,
-    legend,
-    plain_number,
-    separate_cells,
-)
+from suite.report.figures import style
 from suite.report.statistics.anytime import Steps
 from suite.report.statistics.clock import untimed_note
 from suite.report.tables.ranking import rankings, scene_scores
@@ -99,15 +88,15 @@ def plot_overview(scores: pd.DataFrame, left_out: str = "") -> Figure:
     figure, panels = plt.subplots(1, 2, figsize=size, sharey=True, layout="constrained")
     for axes, drawn in zip(panels, maps, strict=True):
         _draw(axes, drawn, list(order))
-    figure.suptitle("Planners and scenes: how near the optimum, and how soon", fontsize=HEADING)
-    legend(figure, {}, joined(HOW_TO_READ, left_out))
+    style.heading(figure, "Planners and scenes: how near the optimum, and how soon")
+    style.legend(figure, {}, joined(HOW_TO_READ, left_out))
     return figure
 
 
 def _gaps(scores: pd.DataFrame) -> _Map:
     gap, success = scores["gap median (%)"], scores["success (%)"]
     texts = [_gap_text(g, s) for g, s in zip(gap, success, strict=True)]
-    return _map("median gap (%)", scores, gap, texts, LEAST_GAP)
+    return _map("median gap (%)", scores, gap, texts, style.LEAST_GAP)
 
 
 def _times(scores: pd.DataFrame) -> _Map:
@@ -140,30 +129,30 @@ def _gap_text(gap: float, success: float) -> str:
 
 def _three(value: float) -> str:
     """A number with three digits at most."""
-    return plain_number(float(f"{value:.2g}" if value < 100 else f"{value:.0f}"))
+    return style.plain_number(float(f"{value:.2g}" if value < 100 else f"{value:.0f}"))
 
 
 def _draw(axes: Axes, drawn: _Map, planners: list[str]) -> None:
     """Draw one map: its cells, their numbers, the names around them."""
     values = drawn.numbers.loc[planners].to_numpy()
     texts = drawn.texts.loc[planners].to_numpy()
-    colours, norm = colouring(values, drawn.least)
+    colours, norm = style.colouring(values, drawn.least)
     shades = np.ma.masked_invalid(np.maximum(values, drawn.least))
     axes.imshow(shades, cmap=colours, norm=norm, aspect="auto")
     for (row, column), text in np.ndenumerate(texts):
         colour = _letters(norm, shades[row, column])
-        style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": SMALLEST}
-        axes.text(column, row, text, color=colour, **style)
-    axes.set_title(drawn.title, fontsize=TITLE)
+        letters: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": style.SMALLEST}
+        axes.text(column, row, text, color=colour, **letters)
+    axes.set_title(drawn.title, fontsize=style.TITLE)
     axes.set_xticks(
         range(len(drawn.numbers.columns)), drawn.numbers.columns, rotation=35, ha="right"
     )
     axes.set_yticks(range(len(planners)), planners)
-    axes.tick_params(labelsize=SMALL)
-    separate_cells(axes, *values.shape, width=0.8)
+    axes.tick_params(labelsize=style.SMALL)
+    style.separate_cells(axes, *values.shape, width=0.8)
     axes.spines[:].set_visible(False)
 
 
 def _letters(norm: LogNorm, shade: Any) -> str:
     """Black or white, whichever is read on the colour of a cell."""
-    return "black" if np.ma.is_masked(shade) or norm(shade) < DARK_FROM else "white"
+    return "black" if np.ma.is_masked(shade) or norm(shade) < style.DARK_FROM else "white"

@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suite.report.figures.style import HEADING, LABEL, SMALL, TITLE, rules
+from suite.report.figures.style import LABEL, SMALL, TITLE, heading, rules
 
 COLUMNS = 4
 """Panels side by side."""
@@ -83,7 +83,7 @@ def title(panels: Panels, text: str, label: str, scenes: int) -> None:
     """
     left_out = scenes - len(panels.axes)
     more = f" ({left_out} more scenes are not drawn)" if left_out else ""
-    panels.figure.suptitle(f"{text}{more}", fontsize=HEADING)
+    heading(panels.figure, f"{text}{more}")
     shown = list(panels.axes.values())
     for axes in shown[-COLUMNS:]:
         axes.set_xlabel(label, fontsize=LABEL)

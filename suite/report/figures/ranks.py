@@ -14,7 +14,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suite.report.figures.style import HEADING, LABEL, TITLE, legend
+from suite.report.figures.style import LABEL, TITLE, heading, legend
 from suite.report.statistics.anytime import Steps
 from suite.report.statistics.inference import LEVEL
 from suite.report.tables.ranking import Ranking, rankings, scene_scores
@@ -98,7 +98,7 @@ def plot_ranks(found: Sequence[Ranking]) -> Figure:
     )
     for axes, ranking, bars in zip(grid.flat, found, bands, strict=True):
         _draw(axes, ranking, bars, beside / length)
-    figure.suptitle("Mean ranks, and the critical difference", fontsize=HEADING)
+    heading(figure, "Mean ranks, and the critical difference")
     legend(figure, {}, HOW_TO_READ)
     return figure
 

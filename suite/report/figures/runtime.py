@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from suite.report.figures.panels import PLANNERS_AT_MOST
-from suite.report.figures.style import HEADING, legend, logarithmic_time, look, numbered, rules
+from suite.report.figures.style import heading, legend, logarithmic_time, look, numbered, rules
 from suite.report.statistics.anytime import Steps, first_within, on_clock, only
 from suite.report.statistics.clock import untimed_note
 from suite.report.statistics.inference import Array
@@ -84,7 +84,7 @@ def plot_ecdf(steps: Steps) -> Figure:
         _draw_ecdf(axes, reached, variants, named)
         axes.set_xlabel(label)
     panels[0].set_ylabel("share of runs and targets reached")
-    figure.suptitle("How soon runs come near the optimum", fontsize=HEADING)
+    heading(figure, "How soon runs come near the optimum")
     scenes = counted(with_optimum.runs["place"].nunique(), "scene")
     note = ECDF_NOTE.format(scenes=scenes, targets=len(TARGETS))
     legend(figure, planners, joined(note, untimed_note(with_optimum.runs)))
@@ -147,7 +147,7 @@ def plot_profile(scores: pd.DataFrame) -> Figure:
     axes.set_ylim(-0.02, 1.03)
     axes.set_xlabel("time, as a multiple of the fastest planner's")
     axes.set_ylabel("share of scenes")
-    figure.suptitle("Performance profile: time to come within 1 % of the optimum", fontsize=HEADING)
+    heading(figure, "Performance profile: time to come within 1 % of the optimum")
     legend(figure, planners, PROFILE_NOTE.format(scenes=counted(ratios.shape[1], "scene")))
     return figure
 

@@ -15,16 +15,7 @@ from matplotlib.path import Path as Outline
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
-from suite.report.figures.style import (
-    BEST,
-    LINES,
-    OBSTACLE,
-    OBSTACLE_EDGE,
-    OPTIMUM,
-    POPULATION,
-    height_for,
-    legend_below,
-)
+from suite.report.figures import style
 from suite.scenes.scene import Query, Scene
 
 WIDTH = 6.0
@@ -71,16 +62,20 @@ def plot_run(
         axes.add_collection(
             LineCollection(
                 list(first_population),
-                colors=POPULATION,
+                colors=style.POPULATION,
                 linewidths=0.6,
                 alpha=0.55,
                 label=f"first population ({len(first_population)} paths)",
             )
         )
     if path is not None:
-        axes.plot(*path.T, color=BEST, linewidth=2.4, marker=".", markersize=7, label=path_label)
+        axes.plot(
+            *path.T, color=style.BEST, linewidth=2.4, marker=".", markersize=7, label=path_label
+        )
     if optimum is not None:
-        axes.plot(*optimum.T, color=OPTIMUM, linewidth=1.3, linestyle="--", label=optimum_label)
+        axes.plot(
+            *optimum.T, color=style.OPTIMUM, linewidth=1.3, linestyle="--", label=optimum_label
+        )
     _finish(figure, axes, query, scene.name)
     return figure
 
@@ -110,18 +105,18 @@ def plot_scene_results(
     figure, axes = _scene_figure(scene)
     widths = np.linspace(5.0, 1.2, max(len(best), 2))
     for i, (planner, path) in enumerate(best.items()):
-        colour, style = LINES[i % len(LINES)]
+        colour, line = style.LINES[i % len(style.LINES)]
         label = (labels or {}).get(planner, planner)
         if path is None:
             axes.plot([], [], linestyle="none", label=label)
         else:
-            axes.plot(*path.T, color=colour, linestyle=style, linewidth=widths[i], label=label)
+            axes.plot(*path.T, color=colour, linestyle=line, linewidth=widths[i], label=label)
     _finish(figure, axes, query, scene.name)
     return figure
 
 
 def _scene_figure(scene: Scene) -> tuple[Figure, Axes]:
-    size = (WIDTH, height_for(scene, WIDTH) + AROUND)
+    size = (WIDTH, style.height_for(scene, WIDTH) + AROUND)
     figure, axes = plt.subplots(figsize=size, layout="constrained")
     draw_room(axes, scene)
     draw_obstacles(axes, scene, 0.7)
@@ -134,8 +129,8 @@ def draw_obstacles(axes: Axes, scene: Scene, linewidth: float) -> None:
         axes.add_patch(
             PathPatch(
                 outline(obstacle.polygon),
-                facecolor=OBSTACLE,
-                edgecolor=OBSTACLE_EDGE,
+                facecolor=style.OBSTACLE,
+                edgecolor=style.OBSTACLE_EDGE,
                 linewidth=linewidth,
             )
         )
@@ -187,4 +182,4 @@ def _finish(figure: Figure, axes: Axes, query: Query, title: str) -> None:
     columns = 1 if max(map(len, labels)) >= ONE_COLUMN_FROM else 2
     width, height = figure.get_size_inches()
     figure.set_size_inches(width, height + LEGEND_LINE * -(-len(labels) // columns))
-    legend_below(figure, ncols=columns, handlelength=3.6)
+    style.legend_below(figure, ncols=columns, handlelength=3.6)

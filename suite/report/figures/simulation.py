@@ -20,17 +20,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 
 from suite.errors import KbgaBenchError, check_file, writing
+from suite.report.figures import style
 from suite.report.figures.scene import draw_ends, draw_room, outline
-from suite.report.figures.style import (
-    BEST,
-    LABEL,
-    LINES,
-    OBSTACLE,
-    OBSTACLE_EDGE,
-    height_for,
-    label_metres,
-    legend_below,
-)
 from suite.simulation.run import Outcome, Simulation
 from suite.simulation.view import Sight, View, is_turn, update_times, view_at
 
@@ -52,7 +43,7 @@ FRAME = 5.0
 FRAME_DPI = 100
 
 LOOKS: dict[Sight, dict[str, Any]] = {
-    Sight.STILL: {"facecolor": OBSTACLE, "edgecolor": OBSTACLE_EDGE, "linewidth": 0.7},
+    Sight.STILL: {"facecolor": style.OBSTACLE, "edgecolor": style.OBSTACLE_EDGE, "linewidth": 0.7},
     Sight.MOVING: {
         "facecolor": "#8f8f8f",
         "edgecolor": "#303030",
@@ -61,13 +52,13 @@ LOOKS: dict[Sight, dict[str, Any]] = {
     },
     Sight.UNDETECTED: {
         "facecolor": "none",
-        "edgecolor": OBSTACLE_EDGE,
+        "edgecolor": style.OBSTACLE_EDGE,
         "linewidth": 0.9,
         "linestyle": (0, (3, 2)),
     },
 }
-TRAIL: dict[str, Any] = {"color": LINES[1][0], "linestyle": "-"}
-PATH: dict[str, Any] = {"color": BEST, "linestyle": (0, (4, 1.5))}
+TRAIL: dict[str, Any] = {"color": style.LINES[1][0], "linestyle": "-"}
+PATH: dict[str, Any] = {"color": style.BEST, "linestyle": (0, (4, 1.5))}
 ROBOT: dict[str, Any] = {
     "marker": "o",
     "markerfacecolor": "black",
@@ -75,7 +66,7 @@ ROBOT: dict[str, Any] = {
     "markeredgewidth": 0.5,
     "linestyle": "none",
 }
-HIT: dict[str, Any] = {"marker": "X", "color": LINES[3][0], "markeredgecolor": "black"}
+HIT: dict[str, Any] = {"marker": "X", "color": style.LINES[3][0], "markeredgecolor": "black"}
 
 
 def plot_snapshots(run: Simulation, most: int = MOST_PANELS) -> Figure:
@@ -97,7 +88,7 @@ def plot_snapshots(run: Simulation, most: int = MOST_PANELS) -> Figure:
     Hu and Yang, Fig. 11 and 12.
     """
     views = [view_at(run, time) for time in snapshot_times(run, most)]
-    columns, height = min(COLUMNS, len(views)), height_for(run.scene, PANEL)
+    columns, height = min(COLUMNS, len(views)), style.height_for(run.scene, PANEL)
     rows = -(-len(views) // columns)
     size = (PANEL * max(columns, 2) + 0.5, (height + 0.15) * rows + 0.8)
     figure, grid = plt.subplots(
@@ -108,8 +99,10 @@ def plot_snapshots(run: Simulation, most: int = MOST_PANELS) -> Figure:
     for letter, axes, view in zip(ascii_lowercase, grid.flat, views, strict=False):
         _draw(axes, run, view, scale=0.6)
         # Updates come at round times, but the interval may be any.
-        axes.set_title(f"({letter}) t = {round(view.time, 2):g} s{_end(run, view)}", fontsize=LABEL)
-        label_metres(axes)
+        axes.set_title(
+            f"({letter}) t = {round(view.time, 2):g} s{_end(run, view)}", fontsize=style.LABEL
+        )
+        style.label_metres(axes)
     _legend(figure, run, views, columns=4 if columns > 2 else 2)
     return figure
 
@@ -187,7 +180,7 @@ def animate(run: Simulation, file: Path) -> None:
     """
     views = [view_at(run, time) for time in frame_times(run)]
     figure, axes = plt.subplots(
-        figsize=(FRAME, height_for(run.scene, FRAME) + 1.0), layout="constrained"
+        figsize=(FRAME, style.height_for(run.scene, FRAME) + 1.0), layout="constrained"
     )
 
     def draw(view: View) -> None:
@@ -260,4 +253,4 @@ def _legend(figure: Figure, run: Simulation, views: Sequence[View], columns: int
     ]
     if run.hits:
         handles.append(Line2D([], [], markersize=8, linestyle="none", label="hit", **HIT))
-    legend_below(figure, handles=handles, ncols=columns, handlelength=3.0)
+    style.legend_below(figure, handles=handles, ncols=columns, handlelength=3.0)

@@ -11,18 +11,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from suite.report.figures.style import (
-    HEADING,
-    LABEL,
-    SMALL,
-    SMALLEST,
-    TITLE,
-    legend_below,
-    look,
-    rules,
-    separate_cells,
-    ticks_at,
-)
+from suite.report.figures import style
 from suite.report.tables.ablation import NOTHING, ablation
 from suite.report.tables.glance import glance
 from suite.report.tables.studies import RESOLUTION, STUDIES, Study, obstacles, of_kbga_plus, sweep
@@ -107,38 +96,46 @@ def plot_sweep(frame: pd.DataFrame, study: Study) -> Figure:
             _arrange_values(axes, study, frame)
             axes.axvline(study.reference, color="black", linestyle=":", linewidth=1.0, zorder=1)
             if column == 0:
-                axes.set_ylabel(AXIS_LABELS[panel], fontsize=LABEL)
-            axes.tick_params(labelsize=SMALL)
-        grid[2 * block, column].set_title(scene, fontsize=TITLE, pad=7)
-        grid[2 * block + 1, column].set_xlabel(study.symbol, fontsize=LABEL)
+                axes.set_ylabel(AXIS_LABELS[panel], fontsize=style.LABEL)
+            axes.tick_params(labelsize=style.SMALL)
+        grid[2 * block, column].set_title(scene, fontsize=style.TITLE, pad=7)
+        grid[2 * block + 1, column].set_xlabel(study.symbol, fontsize=style.LABEL)
         grid[2 * block + 1, column].tick_params(labelbottom=True)
     for column in range(len(scenes) % columns or columns, columns):
         grid[-1, column].set_visible(False)
         grid[-2, column].set_visible(False)
-    figure.suptitle(f"{study.title} (dotted: {study.symbol} {study.reference:g})", fontsize=HEADING)
+    style.heading(figure, f"{study.title} (dotted: {study.symbol} {study.reference:g})")
     if len(families) > 1:
         handles, labels = grid[0, 0].get_legend_handles_labels()
-        legend_below(figure, handles=handles, labels=labels, ncols=2)
+        style.legend_below(figure, handles=handles, labels=labels, ncols=2)
     return figure
 
 
 def _draw_families(axes: Axes, here: pd.DataFrame, families: Sequence[str], panel: str) -> None:
     for i, family in enumerate(families):
         rows = here[here["family"] == family].sort_values("value")
-        axes.plot(rows["value"], rows[panel], label=family, markersize=4, linewidth=1.4, **look(i))
+        axes.plot(
+            rows["value"], rows[panel], label=family, markersize=4, linewidth=1.4, **style.look(i)
+        )
     if panel == "feasible (%)":
         axes.set_ylim(-4.0, 104.0)
         axes.set_yticks([0, 50, 100])
     elif here[panel].isna().all():
         axes.set_yticks([])
         axes.text(
-            0.5, 0.5, "no path", transform=axes.transAxes, ha="center", va="center", fontsize=LABEL
+            0.5,
+            0.5,
+            "no path",
+            transform=axes.transAxes,
+            ha="center",
+            va="center",
+            fontsize=style.LABEL,
         )
     else:
         lowest = 1.0 if panel == "cost with penalties over optimum" else 0.0
         above = 1.12 * max(here[panel].max() - lowest, 0.1)
         axes.set_ylim(lowest - 0.04 * above, lowest + above)
-    rules(axes)
+    style.rules(axes)
 
 
 def _arrange_values(axes: Axes, study: Study, frame: pd.DataFrame) -> None:
@@ -146,7 +143,7 @@ def _arrange_values(axes: Axes, study: Study, frame: pd.DataFrame) -> None:
     if study.logarithmic:
         axes.set_xscale("log")
     shown = values if len(values) <= 5 else values[::2]
-    ticks_at(axes.xaxis, shown)
+    style.ticks_at(axes.xaxis, shown)
 
 
 def plot_resolution(frame: pd.DataFrame, study: Study) -> Figure:
@@ -172,13 +169,13 @@ def plot_resolution(frame: pd.DataFrame, study: Study) -> Figure:
     for axes in (time, gap):
         _arrange_values(axes, study, frame)
         axes.set_xlabel("resolution (lattice units per side)")
-        rules(axes)
+        style.rules(axes)
         # From 0, with room for the markers on it.
         axes.set_ylim(bottom=-0.03 * axes.get_ylim()[1])
     time.set_ylabel("cpu time of a run, ratio to resolution 100")
     gap.set_ylabel("mean gap to the exact optimum (%)")
-    figure.suptitle(study.title, fontsize=HEADING)
-    legend_below(figure, ncols=3, handlelength=3.4)
+    style.heading(figure, study.title)
+    style.legend_below(figure, ncols=3, handlelength=3.4)
     return figure
 
 
@@ -196,18 +193,18 @@ def plot_obstacles(frame: pd.DataFrame) -> Figure:
     time.plot(x, frame["ratio to best"], label="until the best was found", **_marked(1))
     time.plot(x, frame["paper ratio"], label="paper", **PAPER)
     time.set_ylabel("cpu time, ratio to 20 obstacles")
-    time.legend(frameon=False, fontsize=LABEL, handlelength=3.4)
+    time.legend(frameon=False, fontsize=style.LABEL, handlelength=3.4)
     check.plot(x, frame["cpu per check (us)"], **_marked(0))
     check.set_ylabel("cpu time of a run per collision check (µs)")
     for axes in (time, check):
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_xlabel("obstacles")
-        ticks_at(axes.xaxis, sorted(set(x)))
-        axes.tick_params(axis="x", labelsize=SMALL)
-        rules(axes)
+        style.ticks_at(axes.xaxis, sorted(set(x)))
+        axes.tick_params(axis="x", labelsize=style.SMALL)
+        style.rules(axes)
         _plain_logarithm(axes)
-    figure.suptitle("KBGA among more and more obstacles", fontsize=HEADING)
+    style.heading(figure, "KBGA among more and more obstacles")
     return figure
 
 
@@ -219,7 +216,7 @@ def _plain_logarithm(axes: Axes) -> None:
     decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
     ticks = [float(d * step) for d in decades for step in steps if low <= d * step <= high]
     axes.set_ylim(low, high)
-    ticks_at(axes.yaxis, ticks)
+    style.ticks_at(axes.yaxis, ticks)
 
 
 def plot_ablation(frame: pd.DataFrame) -> Figure:
@@ -251,21 +248,21 @@ def plot_ablation(frame: pd.DataFrame) -> Figure:
             else:
                 axes.add_patch(Rectangle((j - 0.5, i - 0.5), 1, 1, **NO_PATH))
             _write_cell(axes, i, j, row, gaps[i, j], norm)
-    figure.suptitle(
+    style.heading(
+        figure,
         "KBGA without some of its operators (n/m: runs that found a path; hatched: none did)",
-        fontsize=HEADING,
     )
     image = axes.imshow(gaps, cmap="Greys", norm=norm, aspect="auto")
-    axes.set_xticks(range(len(scenes)), scenes, fontsize=SMALL)
+    axes.set_xticks(range(len(scenes)), scenes, fontsize=style.SMALL)
     axes.xaxis.tick_top()
-    axes.set_yticks(range(len(names)), _ablation_labels(names), fontsize=LABEL)
-    separate_cells(axes, *gaps.shape, width=1.2)
+    axes.set_yticks(range(len(names)), _ablation_labels(names), fontsize=style.LABEL)
+    style.separate_cells(axes, *gaps.shape, width=1.2)
     families = [str(family) for family, _ in names]
     for i in range(1, len(names)):
         if families[i] != families[i - 1]:
             axes.axhline(i - 0.5, color="black", linewidth=1.2)
     bar = figure.colorbar(image, ax=axes, shrink=0.7, pad=0.01)
-    bar.set_label("mean gap to the exact optimum (%)", fontsize=LABEL)
+    bar.set_label("mean gap to the exact optimum (%)", fontsize=style.LABEL)
     bar.ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     return figure
 
@@ -279,7 +276,7 @@ def _write_cell(axes: Axes, i: int, j: int, row: dict[Any, Any], gap: float, nor
         glance(row).replace(" of ", "/").replace(" (", "\n("),
         ha="center",
         va="center",
-        fontsize=SMALLEST,
+        fontsize=style.SMALLEST,
         linespacing=0.95,
         color="white" if dark else "black",
         bbox=None if row["feasible"] else {"facecolor": "white", "edgecolor": "none", "pad": 1},
@@ -296,4 +293,4 @@ def _ablation_labels(names: Sequence[tuple[Any, ...]]) -> list[str]:
 
 
 def _marked(i: int) -> dict[str, Any]:
-    return look(i) | {"markersize": 5}
+    return style.look(i) | {"markersize": 5}

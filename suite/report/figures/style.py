@@ -82,6 +82,11 @@ def look(i: int) -> dict[str, Any]:
     }
 
 
+def heading(figure: Figure, text: str) -> None:
+    """Write what a figure shows above it."""
+    figure.suptitle(text, fontsize=HEADING)
+
+
 def rules(axes: Axes) -> None:
     """Draw thin lines behind what is drawn, at the ticks."""
     axes.grid(alpha=0.3, linewidth=0.5)
