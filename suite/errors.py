@@ -42,14 +42,7 @@ class HarnessError(KbgaBenchError):
 
 @contextmanager
 def writing(file: Path, error: type[KbgaBenchError] = KbgaBenchError) -> Iterator[None]:
-    """Raise an error that names the file if the system refuses to write it.
-
-    Parameters
-    ----------
-    file : Path
-    error : type
-        Of the error.
-    """
+    """Raise an error that names the file if the system refuses to write it."""
     try:
         yield
     except OSError as cause:
@@ -57,23 +50,11 @@ def writing(file: Path, error: type[KbgaBenchError] = KbgaBenchError) -> Iterato
 
 
 def check_file(
-    file: Path,
-    what: str,
-    suffixes: Sequence[str],
-    error: type[KbgaBenchError] = KbgaBenchError,
+    file: Path, what: str, suffixes: Sequence[str], error: type[KbgaBenchError] = KbgaBenchError
 ) -> None:
     """Refuse a file of a kind that these things can't be, or in a folder that there is not.
 
     Before anything is made for it, which may take long.
-
-    Parameters
-    ----------
-    file : Path
-    what : str
-        In the plural.
-    suffixes : sequence of str
-    error : type
-        Of the error.
 
     Examples
     --------

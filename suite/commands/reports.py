@@ -53,8 +53,9 @@ def tables(
 
     Example: kbga-bench tables out/paper.db --only summary --only ranking
     """
+    from suite.report.all_tables import read_tables
     from suite.report.formats import render
-    from suite.report.results_folder import read_tables, write_tables
+    from suite.report.results_folder import write_tables
     from suite.report.table import named
 
     found = named(read_tables(store, reference), only or [])

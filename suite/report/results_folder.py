@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from suite.errors import StoreError, writing
-from suite.report.all_tables import all_tables
+from suite.report.all_tables import read_tables
 from suite.report.export.files import export_rows, made_folder
 from suite.report.figures.comparison import comparison_figures
 from suite.report.figures.convergence import convergence_figures
@@ -39,13 +39,11 @@ from suite.scenes.scene import Query, Scene
 from suite.simulation.record import from_data
 from suite.store.read import (
     read_events,
-    read_first_measures,
     read_paths,
     read_replans,
     read_runs,
     read_sessions,
     read_simulation,
-    read_simulations,
     read_snapshots,
 )
 
@@ -107,32 +105,6 @@ def write_results(
     with writing(manifest):
         manifest.write_text(json.dumps(made, indent=2) + "\n", encoding="utf-8")
     return [*files, manifest]
-
-
-def read_tables(store: Path, reference: str | None = None) -> list[Table]:
-    """All tables of a store.
-
-    Parameters
-    ----------
-    store : Path
-    reference : str, optional
-        The planner that the statistics compare the others with; default: kbga, or else the first.
-
-    Raises
-    ------
-    StoreError
-        If it can't be read.
-    KbgaBenchError
-        If no run is of the reference.
-    """
-    return all_tables(
-        read_runs(store),
-        read_first_measures(store),
-        read_events(store),
-        simulations=read_simulations(store),
-        replans=read_replans(store),
-        reference=reference,
-    )
 
 
 def write_tables(tables: Sequence[Table], directory: Path, style: TableFormat) -> list[Path]:

@@ -15,10 +15,12 @@ import pandas as pd
 from suite.paper.reported import (
     KBGA,
     PLAIN_GA,
+    RUNS,
     WITHOUT_CROSSOVER_AND_MUTATION,
     Reported,
     best_reported,
     find,
+    spread_of,
 )
 from suite.report.paper.tables import kinds_of_sides
 from suite.report.rows import feasible
@@ -38,9 +40,6 @@ from suite.report.statistics.inference import Array
 from suite.report.table import Table
 from suite.report.tables.ablation import CLASSICAL, NOTHING, SPECIALISED, ablated
 from suite.report.words import fixed
-
-RUNS = 20
-"""Of the paper, in each of its comparisons."""
 
 VARIATION = 2.58 / 7.81
 """Standard deviation over mean of the paper's times on its unstructured scene: section IV states
@@ -303,11 +302,8 @@ def _log_sample(times: Array) -> Sample:
 
 
 def _paper_sample(figure: Reported, scale: float) -> Sample:
-    spreads = find(
-        source=figure.source, scene=figure.scene, planner=figure.planner,
-        quantity=figure.quantity, statistic="sd",
-    )  # fmt: skip
-    sd = spreads[0].value / scale if spreads else float("nan")
+    spread = spread_of(figure)
+    sd = float("nan") if spread is None else spread / scale
     return Sample(figure.value / scale, sd, figure.runs or RUNS)
 
 

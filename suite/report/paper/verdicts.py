@@ -13,7 +13,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from suite.paper.reported import KBGA, KBGA_PLUS, PLAIN_GA, Reported, best_reported, reported
+from suite.paper.reported import (
+    KBGA,
+    KBGA_PLUS,
+    PLAIN_GA,
+    RUNS,
+    Reported,
+    best_reported,
+    reported,
+    spread_of,
+)
 from suite.report.paper.tables import kinds_of_sides
 from suite.report.rows import feasible, settings_of
 from suite.report.statistics.agreement import (
@@ -39,9 +48,6 @@ BETTER, WORSE = "better", "worse"
 SETTING, NO_DATA = "setting", "no data"
 
 OTHER_MACHINE = "another machine; ratios are among the contrasts"
-RUNS = 20
-"""Of the paper, where it speaks of none: as for its other figures."""
-
 NOTE = (
     "ours: over the runs that found a path; {plus}setting: what we set, which is no result and is "
     "not counted. Our scenes are drawn so that their optimum is the paper's best cost, so that "
@@ -376,7 +382,7 @@ def _beyond(figure: Reported, value: Any, scale: float) -> Any:
 def _paper_sample(figure: Reported, ours: Sample) -> Sample:
     """The paper's runs; ours lend their spread where it tells none."""
     scale = _paper_scale(figure)
-    spread = _reported_spread(figure)
+    spread = spread_of(figure)
     sd = ours.sd if spread is None else spread / scale
     return Sample(float(_beyond(figure, figure.value, scale)), sd, figure.runs or RUNS)
 
@@ -396,7 +402,7 @@ def _by_sign(figure: Reported, *, is_less: bool) -> str:
 
 def _apart(figure: Reported, ours: Sample, paper: Sample, compared: Compared) -> str:
     """How far two means are apart, in the unit in which they are compared."""
-    lent = "" if _reported_spread(figure) is not None else "; no SD stated: ours for both"
+    lent = "" if spread_of(figure) is not None else "; no SD stated: ours for both"
     if np.isnan(compared.low):
         return "one run has no spread"
     if figure.quantity == "cost":
@@ -471,17 +477,6 @@ def _reaction(figure: Reported, rows: Rows) -> Verdict:
     change = news["number"].min() if "obstacle A" in figure.note else news["number"].max()
     ours = float(news.loc[news["number"] == change, "latency_s"].median())
     return Verdict(ours, NOT_COMPARABLE, "our median; another machine")
-
-
-def _reported_spread(figure: Reported) -> float | None:
-    """The standard deviation that the paper states at the same place, if it does."""
-    for other in reported():
-        same = (other.source, other.scene, other.planner, other.quantity, dict(other.setting))
-        if other.statistic == "sd" and same == (
-            figure.source, figure.scene, figure.planner, figure.quantity, dict(figure.setting),
-        ):  # fmt: skip
-            return other.value
-    return None
 
 
 def _as_row(figure: Reported, given: Verdict, plus: float) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import Any
 import pandas as pd
 
 from suite.planner import PlanStatus
-from suite.report.rows import feasible
+from suite.report.rows import feasible, places
 from suite.report.statistics.clock import untimed_note
 from suite.report.table import Kind, Table
 from suite.report.words import joined
@@ -65,8 +65,10 @@ def summary(runs: pd.DataFrame) -> pd.DataFrame:
     DataFrame
         A row for each scene, query and planner variant, in the order of their first runs by name.
     """
-    groups = runs.groupby(["scene", "query", "variant"], sort=False)
-    rows = [{**_names(runs, name), **_measures(group)} for name, group in groups]
+    rows = [
+        {"scene": place, "planner": variant, **_measures(group)}
+        for (place, variant), group in runs.groupby([places(runs), "variant"], sort=False)
+    ]
     frame = pd.DataFrame(rows, columns=None if rows else ["scene", "planner", "runs"])
     for column in ("runs", "solved", "without path", "failed"):
         if column in frame:
@@ -115,12 +117,6 @@ def spread(values: "pd.Series[Any]", what: str, unit: str = "") -> dict[str, flo
         f"{what} mean{suffix}": float(numbers.mean()),
         f"{what} SD{suffix}": float(numbers.std(ddof=1)),
     }
-
-
-def _names(runs: pd.DataFrame, name: Any) -> dict[str, str]:
-    scene, query, variant = (str(part) for part in name)
-    several = len(runs.loc[runs["scene"] == scene, "query"].unique()) > 1
-    return {"scene": f"{scene}/{query}" if several else scene, "planner": variant}
 
 
 def _measures(group: pd.DataFrame) -> dict[str, Any]:

@@ -15,11 +15,11 @@ from suite.harness.cell import run_cell
 from suite.harness.single import cell_for
 from suite.harness.single_simulation import world_for
 from suite.planner import PlanStatus
+from suite.report.all_tables import read_tables
 from suite.report.figures.style import NOTHING
 from suite.report.formats import as_texts
 from suite.report.html.page import write_report
 from suite.report.html.shades import contrast
-from suite.report.results_folder import read_tables
 from suite.scenes.geojson import write_scene
 from suite.scenes.scene import make_scene
 from tests.suite.commands import in_own_process
