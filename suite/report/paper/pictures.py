@@ -21,6 +21,7 @@ from suite.planner import Snapshot
 from suite.report.figures.scene import draw_ends, draw_obstacles, draw_room
 from suite.report.figures.style import LABEL, LINES, POPULATION, SMALLEST, height_for, label_metres
 from suite.report.rows import cheapest, feasible
+from suite.scenes.homotopy import Word, routes_of
 from suite.scenes.scene import Query, Scene
 
 EVOLUTIONS = {"unstructured": 6, "maze": 7, "zigzag": 8, "double_u": 9}
@@ -140,7 +141,7 @@ def best_of_routes(
 ) -> dict[str, tuple[NDArray[np.float64], float]]:
     """The shortest path of each route that runs took, the shortest route first.
 
-    Two paths are of one route if they pass every obstacle on the same side.
+    Two paths are of one route if one can be deformed into the other without passing an obstacle.
 
     Parameters
     ----------
@@ -156,42 +157,15 @@ def best_of_routes(
     dict
         From "(a), 17 of 20 runs" to path and length.
     """
-    places = np.array([o.polygon.representative_point().coords[0] for o in scene.obstacles])
-    routes: dict[tuple[int, ...], list[tuple[float, str]]] = {}
-    for key, cost in zip(runs["key"], runs["cost"], strict=True):
-        routes.setdefault(sides(paths[key], places), []).append((float(cost), str(key)))
+    words = routes_of(scene, [paths[key] for key in runs["key"]])
+    routes: dict[Word, list[tuple[float, str]]] = {}
+    for word, key, cost in zip(words, runs["key"], runs["cost"], strict=True):
+        routes.setdefault(word, []).append((float(cost), str(key)))
     ordered = sorted(routes.values(), key=min)[:most]
     return {
         f"({letter}), {len(members)} of {len(runs)} runs": (paths[min(members)[1]], min(members)[0])
         for letter, members in zip("abcdefgh", ordered, strict=False)
     }
-
-
-def sides(path: NDArray[np.float64], places: NDArray[np.float64]) -> tuple[int, ...]:
-    """How often a path crosses the ray upwards from each place, to the right less to the left.
-
-    Paths with the same ends that agree in it enclose none of the places between them.
-
-    Parameters
-    ----------
-    path : (n, 2) float64, metres
-    places : (m, 2) float64, metres
-
-    Examples
-    --------
-    >>> above, below = np.array([[0, 0], [2, 5], [4, 0]]), np.array([[0, 0], [4, 0]])
-    >>> place = np.array([[2, 1]])
-    >>> sides(above, place), sides(below, place)
-    ((1,), (0,))
-    """
-    (x, y), (u, v) = path[:-1].T[:, :, None], path[1:].T[:, :, None]
-    right = (x <= places[:, 0]) & (places[:, 0] < u)
-    left = (u <= places[:, 0]) & (places[:, 0] < x)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        height = y + (places[:, 0] - x) / (u - x) * (v - y)
-    is_above = height > places[:, 1]
-    crossed = (right & is_above).sum(axis=0) - (left & is_above).sum(axis=0)
-    return tuple(crossed.tolist())
 
 
 def least_inside(scene: Scene, paths: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
