@@ -7,7 +7,11 @@ import pandas as pd
 
 from suite.planner import PlanStatus
 
-_NAME = ["scene", "query", "world", "variant"]
+NAME = ["scene", "query", "world", "variant"]
+"""What tables tell rows apart by, but for the seed."""
+
+BUDGET = ["budget_wall_s", "budget_generations", "budget_checks", "budget_cpu_s"]
+
 _VERSION = [
     "scene_hash",
     "planner",
@@ -15,10 +19,7 @@ _VERSION = [
     "settings",
     "world_settings",
     "cold",
-    "budget_wall_s",
-    "budget_generations",
-    "budget_checks",
-    "budget_cpu_s",
+    *BUDGET,
 ]
 
 
@@ -41,7 +42,7 @@ def newest(runs: pd.DataFrame) -> pd.DataFrame:
     if runs.empty:
         return runs
     version = runs.groupby(_VERSION, dropna=False).ngroup()
-    names = runs.groupby(_NAME, dropna=False).ngroup()
+    names = runs.groupby(NAME, dropna=False).ngroup()
     started = runs["started_at"].fillna("")
     last = started.groupby(names).transform("max") == started
     current = version.where(last).groupby(names).transform("last")

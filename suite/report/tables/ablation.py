@@ -18,7 +18,15 @@ from suite.paper.reported import (
 from suite.report.rows import feasible, places, settings_of
 from suite.report.statistics.generations import cut_off
 from suite.report.table import Kind, Table
-from suite.report.tables.compared import KINDS, NOTE, PENALTIES_NOTE, RATIO_NOTE, compare, families
+from suite.report.tables.compared import (
+    COLUMNS,
+    KINDS,
+    NOTE,
+    PENALTIES_NOTE,
+    RATIO_NOTE,
+    compare,
+    families,
+)
 from suite.report.tables.glance import at_a_glance
 from suite.report.tables.studies import GLANCE_NOTE
 
@@ -211,11 +219,7 @@ def ablation_tables(runs: pd.DataFrame, cost_note: str) -> list[Table]:
             GLANCE_NOTE + plain,
         )
     )
-    columns = [
-        "scene", "settings", "switched off", "runs", "feasible", "cost mean", "cost SD",
-        "gap mean (%)", "cost with penalties mean", "gen to best mean", "checks mean",
-        "cpu to best mean (ms)", "cpu total median (ms)", "ratio to best", "ratio total",
-    ]  # fmt: skip
+    columns = ["scene", "settings", "switched off", "runs", "feasible", *COLUMNS]
     ratios = RATIO_NOTE.format(reference="the same settings with nothing switched off")
     note = f"{NOTE} {PENALTIES_NOTE} {ratios}{plain}"
     rows = f"{title}: all measures"

@@ -13,7 +13,7 @@ from suite.report.statistics.anytime import Steps, gap_at, on_clock
 from suite.report.statistics.clock import untimed_note
 from suite.report.statistics.inference import Array
 from suite.report.table import Table
-from suite.report.tables.glance import SIDE_BY_SIDE, at_a_glance
+from suite.report.tables.glance import SIDE_BY_SIDE, at_a_glance, planners_together
 from suite.report.tables.targets import medians
 from suite.report.words import fixed, joined, of_some
 
@@ -86,18 +86,12 @@ def budget_tables(steps: Steps) -> list[Table]:
     rows = Table("fixed-budget-rows", title, frame, told, infinite="no path", detail=True)
     if frame["scene"].nunique() > SIDE_BY_SIDE:
         return [rows]
-    glanced = at_a_glance(_with_budget_names(frame), ["planner", "after"], _cell)
+    named = frame.assign(after=[f"{budget:g} ms" for budget in frame["budget (ms)"]])
+    ordered = planners_together(named, "budget (ms)")
+    glanced = at_a_glance(ordered, ["planner", "after"], _cell)
     note = f"k of n: how many runs had a path. {told}"
     title = "Median gap (%) after a fixed wall time"
     return [Table("fixed-budget", title, glanced, note), rows]
-
-
-def _with_budget_names(frame: pd.DataFrame) -> pd.DataFrame:
-    """With a column for the budget as it is printed; a planner's rows together."""
-    named = frame.assign(after=[f"{budget:g} ms" for budget in frame["budget (ms)"]])
-    order = {name: i for i, name in enumerate(dict.fromkeys(named["planner"]))}
-    keys = [named["planner"].map(order), named["budget (ms)"]]
-    return named.iloc[np.lexsort(keys[::-1])]
 
 
 def _cell(row: Mapping[Any, Any]) -> str:

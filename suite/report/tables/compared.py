@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from suite.report.rows import feasible
+from suite.report.rows import BUDGET, feasible
 from suite.report.table import Kind
 
 NOTE = (
@@ -19,10 +19,12 @@ PENALTIES_NOTE = (
 )
 RATIO_NOTE = "ratio: of the cpu time to that of {reference}."
 
+COLUMNS = [
+    "cost mean", "cost SD", "gap mean (%)", "cost with penalties mean", "gen to best mean",
+    "checks mean", "cpu to best mean (ms)", "cpu total median (ms)", "ratio to best", "ratio total",
+]  # fmt: skip
 KINDS = {"gen to best mean": Kind.COUNT, "checks mean": Kind.COUNT}
-"""Of the columns of :func:`compare`."""
-
-_BUDGET = ["budget_wall_s", "budget_generations", "budget_checks", "budget_cpu_s"]
+"""Of :func:`compare`: what a table of all measures shows, and what these are."""
 
 
 def families(
@@ -51,7 +53,7 @@ def families(
     keys = [
         (planner, texts[id(values)], budget)
         for planner, values, budget in zip(
-            runs["planner"], settings, map(str, runs[_BUDGET].to_numpy().tolist()), strict=True
+            runs["planner"], settings, map(str, runs[BUDGET].to_numpy().tolist()), strict=True
         )
     ]
     members: dict[tuple[str, str, str], Mapping[str, Any]] = {}

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from suite.report.words import fixed, of_some
@@ -45,6 +46,21 @@ def at_a_glance(
         ],
         columns=[*rows, *places],
     )
+
+
+def planners_together(frame: pd.DataFrame, by: str, *, falling: bool = False) -> pd.DataFrame:
+    """The rows of each planner below each other, in the order of a column.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        With ``planner``; these stay in the order of their first rows.
+    by : str
+    falling : bool
+    """
+    order = {name: i for i, name in enumerate(dict.fromkeys(frame["planner"]))}
+    values = -frame[by] if falling else frame[by]
+    return frame.iloc[np.lexsort([values, frame["planner"].map(order)])]
 
 
 def glance(row: Mapping[Any, Any]) -> str:

@@ -10,13 +10,11 @@ from typing import Any
 import pandas as pd
 
 from suite.paper.reported import KBGA, find
-from suite.report.rows import feasible
+from suite.report.rows import NAME, feasible
 from suite.report.statistics.clock import by_the_clock, untimed_note
 from suite.report.table import Kind, Table
 from suite.report.tables.summary import spread
 from suite.report.words import joined
-
-GROUP = ["scene", "query", "world", "variant"]
 
 SIMULATION_NOTE = (
     "unhurt: runs in which the robot came to the goal and no obstacle ever hit it, judged in "
@@ -73,7 +71,7 @@ def simulated_tables(
     if runs.empty:
         return []
     fared = runs.merge(simulations, on="key", how="left", validate="one_to_one")
-    asked = runs[["key", "world_settings", "contended", *GROUP]].merge(replans, on="key")
+    asked = runs[["key", "world_settings", "contended", *NAME]].merge(replans, on="key")
     note = joined(REPLANNING_NOTE, untimed_note(runs))
     tables = [
         Table("simulations", "How the robots fared", how_they_fared(fared), SIMULATION_NOTE),
@@ -103,7 +101,7 @@ def how_they_fared(runs: pd.DataFrame) -> pd.DataFrame:
         Simulated runs, with the columns of :func:`suite.store.read.read_simulations`.
     """
     rows = []
-    for name, group in runs.groupby(GROUP, sort=False):
+    for name, group in runs.groupby(NAME, sort=False):
         good = feasible(group)
         rows.append(
             {
@@ -128,10 +126,10 @@ def how_they_answered(replans: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     replans : DataFrame
-        Joined with the columns GROUP of their runs.
+        Joined with the columns NAME of their runs.
     """
     rows = []
-    for name, group in replans.groupby(GROUP, sort=False):
+    for name, group in replans.groupby(NAME, sort=False):
         latency = 1e3 * group.loc[by_the_clock(group), "latency_s"].dropna()
         gaps = 100.0 * (group["cost"] / group["optimum"] - 1.0).dropna()
         missed = group["optimum"].notna() & group["cost"].isna() & group["latency_s"].notna()

@@ -14,14 +14,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from suite.planner import PlanStatus
-from suite.report.rows import newest
+from suite.report.rows import NAME, newest
 from suite.report.statistics.clock import by_the_clock, dropped_note, fair, untimed_note
 from suite.report.statistics.few_runs import too_few
 from suite.report.statistics.inference import LEVEL, REPETITIONS, holm, mann_whitney
 from suite.report.table import Kind, Table
 from suite.report.words import joined
-
-PLACE = ["scene", "query", "world", "variant"]
 
 BOOTSTRAP_SEED = 2026
 
@@ -138,7 +136,7 @@ _EMPTY = (
 
 
 def _groups(runs: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
-    for place, group in fair(newest(runs)).groupby(PLACE, sort=False, dropna=False):
+    for place, group in fair(newest(runs)).groupby(NAME, sort=False, dropna=False):
         yield tuple(part if isinstance(part, str) else "" for part in place), group
 
 
