@@ -1,5 +1,7 @@
 """Numbers and sentences as tables, notes and pictures write them."""
 
+from collections.abc import Iterable
+
 
 def fixed(value: float, digits: int = 2) -> str:
     """A number with so many digits after the point, and no sign before a zero.
@@ -32,6 +34,19 @@ def of_some(text: str, some: int, runs: int) -> str:
     ('0.24', '0.24 (19 of 20)')
     """
     return text if some == runs else f"{text} ({some} of {runs})"
+
+
+def some_of(names: Iterable[object], most: int) -> str:
+    """The first of some names, and how many more there are.
+
+    Examples
+    --------
+    >>> some_of("abc", 3), some_of("abcde", 3)
+    ('a, b, c', 'a, b, c and 2 more')
+    """
+    different = list(dict.fromkeys(map(str, names)))
+    more = f" and {len(different) - most} more" if len(different) > most else ""
+    return ", ".join(different[:most]) + more
 
 
 def joined(*sentences: str) -> str:
