@@ -72,14 +72,7 @@ def update_times(run: Simulation) -> list[float]:
 
 
 def is_turn(before: float | None, now: float | None, driven: float) -> bool:
-    """Whether the path ahead became another one than what was left of the one before.
-
-    Parameters
-    ----------
-    before, now : float, optional
-        Costs of the paths of two updates, metres; None without one.
-    driven : float
-        How far the robot drove between them, metres.
+    """Whether the path ahead is another one than what was left of the one before; by costs, metres.
 
     Examples
     --------

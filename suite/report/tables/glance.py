@@ -49,15 +49,7 @@ def at_a_glance(
 
 
 def planners_together(frame: pd.DataFrame, by: str, *, falling: bool = False) -> pd.DataFrame:
-    """The rows of each planner below each other, in the order of a column.
-
-    Parameters
-    ----------
-    frame : DataFrame
-        With ``planner``; these stay in the order of their first rows.
-    by : str
-    falling : bool
-    """
+    """The rows of each planner below each other, by a column; planners by their first rows."""
     order = {name: i for i, name in enumerate(dict.fromkeys(frame["planner"]))}
     values = -frame[by] if falling else frame[by]
     return frame.iloc[np.lexsort([values, frame["planner"].map(order)])]
