@@ -26,10 +26,6 @@ class NotApplicable:
     reason: str
 
 
-Answer = Finding | NotApplicable | None
-"""What a rule says of a planner; None if it is kept."""
-
-
 class Kind(StrEnum):
     """What came of a rule, in a word."""
 

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from suite.conformance.finding import Answer
 from suite.conformance.small_scenes import SmallScene, asked, small_scenes
 from suite.conformance.surroundings import Surroundings, fingerprint
 from suite.errors import ContractError
@@ -274,9 +273,6 @@ def _run(
         return replace(done, prepared=prepared)
     except (Exception, SystemExit):  # other people's code: it may raise anything
         return failed(recorder)
-
-
-Rule = Callable[[Subject], Answer]
 
 
 def timed(plan: Callable[[], Any], recorder: Recorder) -> Run:

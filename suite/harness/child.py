@@ -26,7 +26,7 @@ ORPHAN_S = 3600
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ending:
+class Outcome:
     """The last message of a process.
 
     alone : whether nothing descends from the process that would outlive it.
@@ -38,7 +38,7 @@ class Ending:
 
 def run_in_child(
     cell: Cell,
-    messages: "Connection[str | Ending, None]",
+    messages: "Connection[str | Outcome, None]",
     stderr: "Connection[None, None]",
     core: int | None,
     snapshots_of: Collection[int] = (),
@@ -49,7 +49,7 @@ def run_in_child(
     ----------
     cell : Cell
     messages : Connection
-        Takes PLANNING, then the Ending.
+        Takes PLANNING, then the Outcome.
     stderr : Connection
         Takes what the process writes to its standard error.
     core : int, optional
@@ -70,7 +70,7 @@ def run_in_child(
     # A planner that forks may come back twice.
     if os.getpid() == process:
         record = replace(record, snapshots=tuple(recorder.snapshots))
-        messages.send(Ending(record, alone=not has_children()))
+        messages.send(Outcome(record, alone=not has_children()))
     # Without the interpreter's farewell: destructors of a planner's libraries may hang or crash,
     # and threads that it left running would be waited for.
     os._exit(0)

@@ -5,15 +5,17 @@ import pickle
 from collections.abc import Set
 from typing import Any
 
-from suite.conformance.finding import Answer, Finding
+from suite.conformance.finding import Finding, NotApplicable
 from suite.conformance.subject import Subject
 from suite.errors import PluginError
 from suite.planner import Budget
 from suite.plugins.discovery import make_settings, settings_as_dict
 from suite.plugins.validation import NAME, flaw
 
+Outcome = Finding | NotApplicable | None
 
-def is_a_planner(subject: Subject) -> Answer:
+
+def is_a_planner(subject: Subject) -> Outcome:
     """It is a subclass of Planner with a plan of the right signature, for this interface."""
     wrong = flaw(subject.planner_class)
     if wrong is None:
@@ -25,7 +27,7 @@ def is_a_planner(subject: Subject) -> Answer:
     )
 
 
-def name_is_well_formed(subject: Subject) -> Answer:
+def name_is_well_formed(subject: Subject) -> Outcome:
     """Its name is of lower-case letters, digits and single hyphens."""
     name: Any = getattr(subject.planner_class, "name", None)
     if isinstance(name, str) and NAME.fullmatch(name):
@@ -37,7 +39,7 @@ def name_is_well_formed(subject: Subject) -> Answer:
     )
 
 
-def abilities_are_known(subject: Subject) -> Answer:
+def abilities_are_known(subject: Subject) -> Outcome:
     """The budgets that it says it keeps are budgets."""
     known = {field.name for field in dataclasses.fields(Budget)}
     budgets: Any = subject.planner_class.abilities.budgets
@@ -54,7 +56,7 @@ def abilities_are_known(subject: Subject) -> Answer:
     )
 
 
-def settings_are_frozen(subject: Subject) -> Answer:
+def settings_are_frozen(subject: Subject) -> Outcome:
     """Its Settings are a frozen dataclass."""
     parameters: Any = getattr(subject.planner_class.Settings, "__dataclass_params__", None)
     if parameters is not None and parameters.frozen:
@@ -66,7 +68,7 @@ def settings_are_frozen(subject: Subject) -> Answer:
     )
 
 
-def settings_come_back(subject: Subject) -> Answer:
+def settings_come_back(subject: Subject) -> Outcome:
     """Its settings survive the way through a matrix and a row: plain data that make them again."""
     given = subject.settings or subject.planner_class.Settings()
     settings, told = subject.planner_class(given).settings, settings_as_dict(given)
@@ -88,7 +90,7 @@ def _lost(told: Any, what: str) -> Finding:
     )
 
 
-def pickles(subject: Subject) -> Answer:
+def pickles(subject: Subject) -> Outcome:
     """Its class and settings can be pickled: that is how they reach other processes."""
     wanted = (subject.planner_class, subject.build().settings)
     try:

@@ -12,11 +12,13 @@ import subprocess
 import sys
 from typing import Any
 
-from suite.conformance.finding import Answer, Finding, NotApplicable
+from suite.conformance.finding import Finding, NotApplicable
 from suite.conformance.rules_of.repeatability import difference, keeps_no_state
 from suite.conformance.subject import Subject
 from suite.plugins.from_file import named_plugins
 from suite.processes.output import print_aside
+
+Outcome = Finding | NotApplicable | None
 
 SCENES = ("one wall", "500 obstacles")
 """Few, as a process is started for them; in the second one, a set of obstacles is a large one."""
@@ -34,7 +36,7 @@ NOT_FOUND = NotApplicable(
 )
 
 
-def same_path_in_another_process(subject: Subject) -> Answer:
+def same_path_in_another_process(subject: Subject) -> Outcome:
     """The same seed and counted budget give the same run in another process."""
     found = keeps_no_state(subject)
     if found is not None:

@@ -4,8 +4,10 @@ from functools import lru_cache
 from itertools import combinations
 from typing import Any
 
-from suite.conformance.finding import Answer, Finding, NotApplicable
+from suite.conformance.finding import Finding, NotApplicable
 from suite.conformance.subject import SEED, Subject, Trial
+
+Outcome = Finding | NotApplicable | None
 
 VARIED = ("one wall", "narrow gap", "500 obstacles")
 SEEDS = (1, 2, 3, 4)
@@ -18,7 +20,7 @@ UNPLANNED = NotApplicable("not all runs end with a plan.")
 
 
 @lru_cache(maxsize=SUBJECTS)
-def same_seed_same_path(subject: Subject) -> Answer:
+def same_seed_same_path(subject: Subject) -> Outcome:
     """The same seed and counted budget give the same run, to the last bit."""
     hindrance = _hindrance(subject)
     if hindrance is not None:
@@ -35,7 +37,7 @@ def same_seed_same_path(subject: Subject) -> Answer:
     return None
 
 
-def another_seed_another_stream(subject: Subject) -> Answer:
+def another_seed_another_stream(subject: Subject) -> Outcome:
     """Another seed gives another run, unless the planner is called deterministic: then the same."""
     found = same_seed_same_path(subject)
     if found is not None:
@@ -80,7 +82,7 @@ def _no_stream(seeds: tuple[int, ...], drew: bool) -> Finding:
 
 
 @lru_cache(maxsize=SUBJECTS)
-def keeps_no_state(subject: Subject) -> Answer:
+def keeps_no_state(subject: Subject) -> Outcome:
     """A planner that has run before, elsewhere, gives the same run as the very first one."""
     found = same_seed_same_path(subject)
     if found is not None:

@@ -3,11 +3,11 @@
 Whoever plans afresh at each update is held to the rules about runs, and that is enough.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import wraps
 
 from suite.conformance.drive import drive, ordinary_drive
-from suite.conformance.finding import Answer, Finding, NotApplicable
+from suite.conformance.finding import Finding, NotApplicable
 from suite.conformance.rules_of.budgets import (
     ATTEMPTS,
     CHECKS,
@@ -19,9 +19,12 @@ from suite.conformance.rules_of.budgets import (
 )
 from suite.conformance.rules_of.repeatability import TIMED, difference
 from suite.conformance.rules_of.runs import MORE
-from suite.conformance.subject import Rule, Subject, Trial, form_of, times
+from suite.conformance.subject import Subject, Trial, form_of, times
 from suite.conformance.surroundings import Surroundings
 from suite.planner import Budget, Planner, PlanStatus
+
+Outcome = Finding | NotApplicable | None
+Rule = Callable[[Subject], Outcome]
 
 AFRESH = NotApplicable("it has no replanner of its own.")
 UNPLANNED = NotApplicable("not all updates end with a plan.")
@@ -31,7 +34,7 @@ def _for_replanners(rule: Rule) -> Rule:
     """A rule that says nothing of planners that plan afresh, or refuse to begin."""
 
     @wraps(rule)
-    def applied(subject: Subject) -> Answer:
+    def applied(subject: Subject) -> Outcome:
         if subject.planner_class.replanner is Planner.replanner:
             return AFRESH
         refused = _refused(subject)
@@ -47,7 +50,7 @@ def _refused(subject: Subject) -> str | None:
 
 
 @_for_replanners
-def replans_end_with_a_plan(subject: Subject) -> Answer:
+def replans_end_with_a_plan(subject: Subject) -> Outcome:
     """A replanner raises no exception and returns a Plan, at the beginning and at each update."""
     for trial in ordinary_drive(subject):
         wrong = trial.run.error or form_of(trial.run.returned)
@@ -62,7 +65,7 @@ def replans_end_with_a_plan(subject: Subject) -> Answer:
 
 
 @_for_replanners
-def replans_suit_what_is_known(subject: Subject) -> Answer:
+def replans_suit_what_is_known(subject: Subject) -> Outcome:
     """It finds free paths from where the robot is; none where there is none; and then one again."""
     for trial in ordinary_drive(subject):
         wrong = _unsuitable(trial)
@@ -113,7 +116,7 @@ def _without_a_path(trials: Iterable[Trial]) -> list[Trial]:
 
 
 @_for_replanners
-def replans_keep_budgets(subject: Subject) -> Answer:
+def replans_keep_budgets(subject: Subject) -> Outcome:
     """Each update keeps the budgets that the planner says it keeps, and counts from zero."""
     most = {"generations": GENERATIONS, "checks": most_checks(CHECKS)}
     limits = {"generations": GENERATIONS, "checks": CHECKS}
@@ -149,7 +152,7 @@ def _unkept(trial: Trial, what: str, name: str) -> Finding:
 
 
 @_for_replanners
-def replans_repeat(subject: Subject) -> Answer:
+def replans_repeat(subject: Subject) -> Outcome:
     """The same seed gives the same sequence, also when another replanner is asked in between."""
     if subject.is_timed and not subject.planner_class.abilities.deterministic:
         return TIMED
@@ -176,7 +179,7 @@ def _difference(one: Iterable[Trial], other: Iterable[Trial], which: str) -> Fin
 
 
 @_for_replanners
-def replans_leave_things_alone(subject: Subject) -> Answer:
+def replans_leave_things_alone(subject: Subject) -> Outcome:
     """An update writes to no scene, and changes nothing of the process."""
     for trial in ordinary_drive(subject):
         changed = "the scene or the query" if trial.scene_changed else None

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable
 
-from suite.conformance.finding import Answer, Finding
+from suite.conformance.finding import Finding, NotApplicable
 from suite.conformance.subject import Subject, Trial
 from suite.conformance.surroundings import Surroundings
 
+Outcome = Finding | NotApplicable | None
 
-def leaves_the_scene_alone(subject: Subject) -> Answer:
+
+def leaves_the_scene_alone(subject: Subject) -> Outcome:
     """A run writes to neither the scene nor the query."""
     return _first(
         subject,
@@ -17,7 +19,7 @@ def leaves_the_scene_alone(subject: Subject) -> Answer:
     )
 
 
-def leaves_random_state_alone(subject: Subject) -> Answer:
+def leaves_random_state_alone(subject: Subject) -> Outcome:
     """A run neither draws from nor seeds the global generators of random and numpy."""
     return _around(
         subject,
@@ -27,7 +29,7 @@ def leaves_random_state_alone(subject: Subject) -> Answer:
     )
 
 
-def leaves_the_folder_alone(subject: Subject) -> Answer:
+def leaves_the_folder_alone(subject: Subject) -> Outcome:
     """A run ends in the working directory in which it began."""
 
     def look(before: Surroundings, after: Surroundings) -> str:
@@ -38,7 +40,7 @@ def leaves_the_folder_alone(subject: Subject) -> Answer:
     return _around(subject, look, "the working directory in which it began", mend)
 
 
-def leaves_the_environment_alone(subject: Subject) -> Answer:
+def leaves_the_environment_alone(subject: Subject) -> Outcome:
     """A run changes no environment variable."""
     return _around(
         subject,
@@ -48,7 +50,7 @@ def leaves_the_environment_alone(subject: Subject) -> Answer:
     )
 
 
-def leaves_the_clock_alone(subject: Subject) -> Answer:
+def leaves_the_clock_alone(subject: Subject) -> Outcome:
     """A run does not set the recorder's clock to zero again."""
     return _first(
         subject,
