@@ -163,13 +163,11 @@ def draw_ends(axes: Axes, query: Query, scale: float = 1.0) -> None:
             *point,
             marker=marker,
             markersize=scale * (9 if marker == "o" else 14),
-            markerfacecolor="white",
-            markeredgecolor="black",
             markeredgewidth=max(1.4 * scale, 0.8),
-            linestyle="none",
             label=name,
             zorder=5,
             clip_on=False,
+            **style.ENDS,
         )
 
 

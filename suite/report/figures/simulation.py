@@ -242,14 +242,9 @@ def _legend(figure: Figure, run: Simulation, views: Sequence[View], columns: int
         Line2D([], [], linewidth=2.0, label="current path", **PATH),
         Line2D([], [], markersize=6, label="robot", **ROBOT),
     ]
-    ends: dict[str, Any] = {
-        "markerfacecolor": "white",
-        "markeredgecolor": "black",
-        "linestyle": "none",
-    }
     handles += [
-        Line2D([], [], marker="o", markersize=7, label="start", **ends),
-        Line2D([], [], marker="*", markersize=11, label="goal", **ends),
+        Line2D([], [], marker="o", markersize=7, label="start", **style.ENDS),
+        Line2D([], [], marker="*", markersize=11, label="goal", **style.ENDS),
     ]
     if run.hits:
         handles.append(Line2D([], [], markersize=8, linestyle="none", label="hit", **HIT))

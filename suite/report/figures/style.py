@@ -40,6 +40,13 @@ LINES = (
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "<", "*")
 
+ENDS: dict[str, Any] = {
+    "markerfacecolor": "white",
+    "markeredgecolor": "black",
+    "linestyle": "none",
+}
+"""Start and goal, a ring and a star."""
+
 HEADING, TITLE, LABEL, SMALL, SMALLEST = 11, 10, 9, 8, 7
 """Font sizes: of a figure's title, of a panel's, of axes and legends, of what stands in many panels
 and of the sentence below, of what stands within them."""
