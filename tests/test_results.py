@@ -8,8 +8,9 @@ import pandas as pd
 import pytest
 
 from suite.report.all_tables import all_tables
+from suite.report.formats import render
+from suite.report.kinds import TableFormat
 from suite.report.statistics.clock import fair
-from suite.report.table import Format, render
 from tests import readme
 
 ROOT = Path(__file__).parents[1]
@@ -46,7 +47,7 @@ def check_tables(folder: Path, *sources: Path) -> None:
         simulations=together("simulations", sources),
         replans=together("replans", sources),
     )
-    made = {f"{table.name}.csv": render(table, Format.CSV) for table in tables}
+    made = {f"{table.name}.csv": render(table, TableFormat.CSV) for table in tables}
     there = {file.name: file.read_text(encoding="utf-8") for file in folder.glob("*.csv")}
     if not all((source / "rows" / "traces.parquet").exists() for source in sources):
         # Its best costs of first populations come out of the traces.

@@ -77,8 +77,8 @@ def plan(
         with print_aside():
             record = run_cell(cell, recorder=recorder)
     else:
+        from suite.report.figures.files import check_figure_file
         from suite.report.figures.run import draw_record
-        from suite.report.figures.scene import check_figure_file
 
         check_figure_file(plot)
         with print_aside():
@@ -237,7 +237,7 @@ def simulate(
 
     use_plugins(plugin)
     if plot is not None:
-        from suite.report.figures.scene import check_figure_file
+        from suite.report.figures.files import check_figure_file
 
         check_figure_file(plot)
     if animate is not None:
@@ -269,7 +269,7 @@ def simulate(
         typer.echo(as_text(record, updates=updates))
     done = simulation_of(record) if plot is not None or animate is not None else None
     if done is not None and plot is not None:
-        from suite.report.figures.scene import save
+        from suite.report.figures.files import save
         from suite.report.figures.simulation import plot_snapshots
 
         with working(f"drawing {plot}"):

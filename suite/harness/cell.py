@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from suite.errors import ContractError, PluginError, SceneError
+from suite.errors import ContractError, PluginError
 from suite.geometry.tolerances import COST_CLAIM_RELATIVE
 from suite.harness.contention import waited
 from suite.harness.prepared import (
@@ -23,6 +23,7 @@ from suite.harness.provenance import host_name, load_average
 from suite.harness.simulated_cell import simulated
 from suite.planner import Plan, PlanStatus, Recorder, refusal
 from suite.referee.claims import as_checks, as_count, improvements, trace
+from suite.scenes.catalogue import scene_as_it_was
 from suite.scenes.scene import Query, scene_fingerprint
 from suite.store.record import Cell, RunRecord
 
@@ -82,10 +83,9 @@ def _blank(cell: Cell) -> RunRecord:
 def _run(
     cell: Cell, blank: RunRecord, recorder: Recorder, before_plan: Callable[[], None]
 ) -> RunRecord:
-    scene = prepared_scene(cell.scene_source)
-    query = scene.query(cell.query)
-    if scene_fingerprint(scene, query) != cell.scene_hash:
-        raise SceneError(f"{cell.scene_source}: is not the scene any more that it was at first.")
+    scene, query = scene_as_it_was(
+        cell.scene_source, cell.query, cell.scene_hash, load=prepared_scene
+    )
     planner = build_planner(cell.planner, cell.settings)
     planner.warm_up()
     reason = refusal(planner, scene, query, cell.budget)

@@ -12,6 +12,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from suite.report.words import counted
+
 TIMES = ("wall_s", "time_to_best_s")
 """Columns of wall times."""
 
@@ -77,16 +79,11 @@ def dropped_note(runs: pd.DataFrame) -> str:
         return ""
     whose = [f"{name} {count}" for name, count in dropped.items()]
     named = ", ".join(whose[:NAMES_AT_MOST]) + (" and others" * (len(whose) > NAMES_AT_MOST))
-    were = "1 row" if dropped.sum() == 1 else f"{dropped.sum()} rows"
+    were = counted(int(dropped.sum()), "row")
     return (
         f"Left out: {were} of runs that the clock ended and that had no core for themselves "
         f"({named})."
     )
-
-
-def joined(*sentences: str) -> str:
-    """A note of several sentences, of which some may be empty."""
-    return " ".join(filter(None, sentences))
 
 
 def _is_charged(runs: pd.DataFrame) -> NDArray[np.bool_]:
