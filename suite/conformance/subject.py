@@ -4,7 +4,6 @@ A run here goes as in the harness: a planner is built and warmed up, may refuse,
 path is judged. The scene that it is given is its own: the judge has another.
 """
 
-import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
@@ -19,6 +18,7 @@ from suite.errors import ContractError
 from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder, refusal
 from suite.processes.random_state import seed_globals
 from suite.referee.claims import as_checks, as_count
+from suite.referee.clock import Clock
 from suite.referee.path import Referee, Verdict
 from suite.scenes.exact import shortest_path
 from suite.scenes.scene import Query, Scene
@@ -277,12 +277,9 @@ def _run(
 
 def timed(plan: Callable[[], Any], recorder: Recorder) -> Run:
     """Plan within the clock; whatever is raised passes."""
-    recorder.start_clock()
-    started, cpu = recorder.started, time.process_time()
-    returned = plan()
-    wall_s, cpu_s = time.perf_counter() - started, time.process_time() - cpu
-    restarted = recorder.started != started
-    return Run(recorder, None, returned, None, wall_s, cpu_s, restarted=restarted)
+    with Clock(recorder) as clock:
+        returned = plan()
+    return Run(recorder, None, returned, None, clock.wall_s, clock.cpu_s, restarted=clock.restarted)
 
 
 def failed(recorder: Recorder) -> Run:

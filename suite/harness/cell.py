@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from suite.errors import ContractError, PluginError, SceneError
 from suite.geometry.tolerances import COST_CLAIM_RELATIVE
-from suite.harness.contention import waited
 from suite.harness.prepared import (
     build_planner,
     exact_optimum,
@@ -23,6 +22,7 @@ from suite.harness.provenance import host_name, load_average
 from suite.harness.simulated_cell import simulated
 from suite.planner import Plan, PlanStatus, Recorder, refusal
 from suite.referee.claims import as_checks, as_count, improvements, trace
+from suite.referee.clock import Clock
 from suite.scenes.scene import Query, scene_fingerprint
 from suite.store.record import Cell, RunRecord
 
@@ -95,27 +95,23 @@ def _run(
     before_plan()
     if cell.world is not None:
         return simulated(blank, planner, rng)
-    recorder.start_clock()
-    started = recorder.started
-    plan = planner.plan(scene, query, cell.budget, rng, recorder)
-    # The one clock stops here: nothing may come between these lines.
-    wall_s, cpu_s = recorder.wall_s(), recorder.cpu_s()
+    with Clock(recorder) as clock:
+        plan = planner.plan(scene, query, cell.budget, rng, recorder)
     measured = replace(
         blank,
-        wall_s=wall_s,
-        cpu_s=cpu_s,
-        contended=waited(wall_s, cpu_s),
+        wall_s=clock.wall_s,
+        cpu_s=clock.cpu_s,
+        contended=clock.contended,
         optimum=exact_optimum(cell.scene_source, cell.query),
     )
     try:
         # Arrays are read-only, but numpy lets their owner change that.
         if scene_fingerprint(scene, query) != cell.scene_hash:
             raise ContractError("plan changed the start or the goal in place.")
-        if recorder.started != started:
+        if clock.restarted:
             raise ContractError("plan started the clock anew. That is for the harness to do.")
-        measured = replace(
-            measured, improvements=improvements(recorder, wall_s), trace=trace(recorder)
-        )
+        reports = improvements(recorder, clock.wall_s)
+        measured = replace(measured, improvements=reports, trace=trace(recorder))
         return _judged(query, _with_plan(measured, _checked(plan)), plan)
     except ContractError as error:
         return replace(measured, reason=str(error))

@@ -23,7 +23,6 @@ planner), so there is no time step to choose.
 """
 
 import gc
-import time
 import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -37,6 +36,7 @@ from suite.errors import ContractError
 from suite.geometry.kernels import first_collision
 from suite.planner import Budget, Plan, PlanStatus, Recorder, Replanner
 from suite.referee.claims import as_checks, as_count
+from suite.referee.clock import Clock
 from suite.referee.path import judge
 from suite.scenes.exact import path_length, shortest_path
 from suite.scenes.scene import Query, Scene
@@ -294,20 +294,18 @@ class _Run:
         reason = None
         # The garbage on the heap is the simulation's: collecting it is not the planner's time.
         gc.disable()
-        recorder.start_clock()
-        started = recorder.started  # whatever the planner does to the recorder
+        clock = Clock(recorder)
         try:
-            plan = self._ask(known, query, self._budget, recorder)
+            with clock:
+                plan = self._ask(known, query, self._budget, recorder)
         except (Exception, SystemExit):
             # Other people's code: whatever it raises is an update without a path.
             plan = Plan(PlanStatus.ERROR)
             reason = traceback.format_exc(limit=-1).strip()
-        # The one clock stops here: nothing may come between these lines.
-        latency_s = time.perf_counter() - started
         gc.enable()
         self._ask = self._replanner.update
-        self._note(_judged(known, query, plan, reason, robot.time, changed, latency_s))
-        charge = latency_s if self._settings.charge is Charge.MEASURED else 0.0
+        self._note(_judged(known, query, plan, reason, robot.time, changed, clock.wall_s))
+        charge = clock.wall_s if self._settings.charge is Charge.MEASURED else 0.0
         return _Pending(robot.time + charge, self.replans[-1].path, [robot.place])
 
     def _note(self, replan: Replan) -> None:
