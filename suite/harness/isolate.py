@@ -6,15 +6,14 @@ The processes come from multiprocessing's fork server, warmed once
 
 import contextlib
 import multiprocessing
-import multiprocessing.forkserver
 import os
 import signal
-import sys
 import threading
 import time
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from multiprocessing import forkserver
 from multiprocessing.connection import wait
 from multiprocessing.context import ForkServerProcess
 from typing import Any
@@ -28,6 +27,7 @@ from suite.planner import PlanStatus
 from suite.processes.cores import own_core
 from suite.processes.family import kill_children, kill_family, kill_group
 from suite.processes.memory import MemoryWatch
+from suite.processes.multiprocessing_private import forget_server, main_module, server_pid
 from suite.processes.pipes import GarbledError, Inbox, Tail
 from suite.store.record import Cell, RunRecord
 
@@ -105,18 +105,16 @@ def run_isolated(
 def start_server(warmth: Warmth) -> None:
     """Start the fork server, if it does not run yet; it warms itself while the caller goes on."""
     with _BOOKKEEPING, _server_environment(warmth):
-        multiprocessing.forkserver.ensure_running()
+        forkserver.ensure_running()
 
 
 def stop_server() -> None:
     """End the fork server, when no run is in flight: the next run starts another, newly warmed."""
-    server = multiprocessing.forkserver._forkserver
     with _BOOKKEEPING:
-        pid = _server_pid()
-        if pid is not None:
+        if (pid := server_pid()) is not None:
             # It may be in the middle of its warming, which can take minutes.
             kill_family(pid)
-        server._stop()  # type: ignore[attr-defined]
+        forget_server()
 
 
 def kill_running() -> None:
@@ -124,7 +122,7 @@ def kill_running() -> None:
     _fleet.stops += 1
     if _BOOKKEEPING.acquire(timeout=ANSWER_S):
         _BOOKKEEPING.release()
-    elif (server := _server_pid()) is not None:
+    elif (server := server_pid()) is not None:
         kill_family(server)
     for pid in list(_fleet.pids):
         kill_family(pid)
@@ -197,7 +195,7 @@ def _end(child: _Child) -> None:
         kill_family(child.pid)
     with _BOOKKEEPING:
         _fleet.pids.discard(child.pid)
-        server = _server_pid()
+        server = server_pid()
         if not child.alone and server is not None:
             kill_children(server, REAP_S, but=_fleet.pids)
     child.stderr.read()
@@ -260,21 +258,6 @@ def _end_in_words(code: int | None) -> str:
         return f"was ended by signal {-code}"
 
 
-def _server_pid() -> int | None:
-    """The fork server's process; None if there is none, or Python no longer says so here."""
-    server = multiprocessing.forkserver._forkserver
-    pid: int | None = getattr(server, "_forkserver_pid", None)
-    return pid
-
-
-def _main_module() -> tuple[str | None, str | None]:
-    """Name and file of the module that this process was started with."""
-    module = sys.modules["__main__"]
-    file = getattr(module, "__file__", None)
-    name = getattr(getattr(module, "__spec__", None), "name", None)
-    return name, None if file is None else os.path.normpath(os.path.abspath(file))  # noqa: PTH100
-
-
 @contextlib.contextmanager
 def _server_environment(warmth: Warmth) -> Iterator[None]:
     """The settings that a fork server started now inherits; variables are put back afterwards."""
@@ -282,7 +265,7 @@ def _server_environment(warmth: Warmth) -> Iterator[None]:
     _CONTEXT.set_forkserver_preload([run_in_child.__module__, Warmth.__module__])
     # A planner that goes through sets of strings then repeats itself from one server to the next.
     salt = {"PYTHONHASHSEED": os.environ.get("PYTHONHASHSEED", "0")}
-    wanted = salt | replace(warmth, main=_main_module()).environment()
+    wanted = salt | replace(warmth, main=main_module()).environment()
     before = {name: os.environ.get(name) for name in wanted}
     os.environ.update(wanted)
     try:
