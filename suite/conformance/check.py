@@ -14,10 +14,10 @@ from typing import Any
 
 from suite.conformance import wording
 from suite.conformance.finding import Finding, Kind, Result
-from suite.conformance.rules import RULES, Rule, apply, claim_of, rule_name
+from suite.conformance.rules import RULES, apply, claim_of, rule_name
 from suite.conformance.rules_of.other_processes import same_path_in_another_process
 from suite.conformance.rules_of.runs import warms_up
-from suite.conformance.subject import Subject
+from suite.conformance.subject import Rule, Subject
 from suite.errors import PluginError
 from suite.plugins.discovery import load_planner, make_settings, planner_names
 from suite.processes.family import kill_family

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from suite.conformance.finding import Outcome
 from suite.conformance.small_scenes import SmallScene, asked, small_scenes
 from suite.conformance.surroundings import Surroundings, fingerprint
 from suite.errors import ContractError
@@ -254,6 +255,10 @@ class Subject:
         outer.restore()
         drew = str(rng.bit_generator.state) != stream
         return Trial(scene, budget, seed, done, drew, changed, before, after)
+
+
+Rule = Callable[[Subject], Outcome]
+"""A function whose name and docstring are the name and the claim of the rule."""
 
 
 def _run(

@@ -25,7 +25,7 @@ ORPHAN_S = 3600
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Outcome:
+class LastMessage:
     """The last message of a process.
 
     alone : whether nothing descends from the process that would outlive it.
@@ -37,7 +37,7 @@ class Outcome:
 
 def run_in_child(
     cell: Cell,
-    messages: "Connection[str | Outcome, None]",
+    messages: "Connection[str | LastMessage, None]",
     stderr: "Connection[None, None]",
     core: int | None,
     snapshots_of: Collection[int] = (),
@@ -48,7 +48,7 @@ def run_in_child(
     ----------
     cell : Cell
     messages : Connection
-        Takes PLANNING, then the Outcome.
+        Takes PLANNING, then the LastMessage.
     stderr : Connection
         Takes what the process writes to its standard error.
     core : int, optional
@@ -69,7 +69,7 @@ def run_in_child(
     # A planner that forks may come back twice.
     if os.getpid() == process:
         record = replace(record, snapshots=tuple(recorder.snapshots))
-        messages.send(Outcome(record, alone=not has_children()))
+        messages.send(LastMessage(record, alone=not has_children()))
     # Without the interpreter's farewell: destructors of a planner's libraries may hang or crash,
     # and threads that it left running would be waited for.
     os._exit(0)

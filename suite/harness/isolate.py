@@ -19,7 +19,7 @@ from multiprocessing.context import ForkServerProcess
 from typing import Any
 
 from suite.errors import HarnessError
-from suite.harness.child import PLANNING, Outcome, run_in_child
+from suite.harness.child import PLANNING, LastMessage, run_in_child
 from suite.harness.fork_server import Warmth
 from suite.harness.matrix import Limits
 from suite.harness.provenance import host_name
@@ -224,7 +224,7 @@ def _watched(child: _Child, limits: Limits) -> RunRecord:
             pipes.remove(child.stderr.pipe)
         if child.inbox.pipe in ready:
             for message in child.inbox.read():
-                if isinstance(message, Outcome):
+                if isinstance(message, LastMessage):
                     child.alone = message.alone
                     return message.record
                 if message == PLANNING and phase == "warm-up":

@@ -5,14 +5,12 @@ import pickle
 from collections.abc import Set
 from typing import Any
 
-from suite.conformance.finding import Finding, NotApplicable
+from suite.conformance.finding import Finding, Outcome
 from suite.conformance.subject import Subject
 from suite.errors import PluginError
 from suite.planner import Budget
 from suite.plugins.discovery import make_settings, settings_as_dict
 from suite.plugins.validation import NAME, flaw
-
-Outcome = Finding | NotApplicable | None
 
 
 def is_a_planner(subject: Subject) -> Outcome:
