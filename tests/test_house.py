@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("suite", "kbga", "baselines")
 FLOORS = (
-    {"errors", "jit", "geometry", "processes", "paper"},
+    {"errors", "jit", "typed", "geometry", "processes", "paper"},
     {"scenes"},
     {"planner"},
     {"plugins", "referee"},

@@ -19,7 +19,8 @@ from suite.conformance.rules_of.other_processes import same_path_in_another_proc
 from suite.conformance.rules_of.runs import warms_up
 from suite.conformance.subject import Rule, Subject
 from suite.errors import PluginError
-from suite.plugins.discovery import load_planner, make_settings, planner_names
+from suite.plugins.discovery import load_planner, planner_names
+from suite.plugins.settings import make_settings
 from suite.processes.family import kill_family
 
 LIMIT_S = 30.0

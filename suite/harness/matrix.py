@@ -40,22 +40,18 @@ and the budget is that of each single plan::
     cold = true                              # plan afresh, though it could go on from what it knows
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+import tomllib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+from msgspec import Meta, Struct
 
 from suite.errors import ContractError, MatrixError, PluginError, SceneError, did_you_mean
-from suite.harness.toml_reader import Reader, read_toml
 from suite.planner import Budget
-from suite.plugins.discovery import (
-    PluginInfo,
-    load_planner,
-    make_settings,
-    planner_info,
-    planner_names,
-    settings_as_dict,
-)
+from suite.plugins.discovery import PluginInfo, load_planner, planner_info, planner_names
+from suite.plugins.settings import make_settings, settings_as_dict
 from suite.scenes.catalogue import has_scene, load_scene
 from suite.scenes.geojson import SUFFIXES
 from suite.scenes.modifiers import MARK, expand_twins, split_modifiers
@@ -63,12 +59,9 @@ from suite.scenes.scene import Scene, scene_fingerprint
 from suite.simulation.record import settings_as_data
 from suite.simulation.settings import world_settings
 from suite.store.record import Cell, World
+from suite.typed import MisfitError, T, dataclass_of, typed
 
 FOLDER = Path(__file__).parent / "matrices"
-PLANNER = "the name of a planner (see `kbga-bench list planners`)"
-WORLD = "the world a name, for tables"
-"""What a text that is missing would be."""
-
 QUICK_SEEDS = 2
 """Enough to see that every cell works and to have a spread at all."""
 
@@ -223,6 +216,83 @@ def matrix_file(name_or_path: str | Path) -> Path:
     )
 
 
+class _Table(Struct, frozen=True, forbid_unknown_fields=True):
+    """Base of the tables of a file: no other keys than these."""
+
+
+_Name = Annotated[str, Meta(min_length=1)]
+_Seed = Annotated[int, Meta(ge=0, description="whole numbers of 0 or more")]
+_Seeds = Annotated[
+    Annotated[int, Meta(ge=1)] | Annotated[list[_Seed], Meta(min_length=1)],
+    Meta(description="a number of seeds, 1 or more, or a list of them"),
+]
+_SceneName = Annotated[_Name, Meta(description="the name or the file of a scene")]
+
+
+class _Scene(_Table, frozen=True):
+    scene: _SceneName
+    seeds: _Seeds | None = None
+
+
+class _World(_Table, frozen=True):
+    name: Annotated[_Name, Meta(description="the world a name, for tables")]
+    scenes: Annotated[list[str], Meta(min_length=1, description="a list of scenes")] | None = None
+    settings: dict[str, Any] = {}
+
+
+class _Planner(_Table, frozen=True):
+    planner: Annotated[
+        _Name, Meta(description="the name of a planner (see `kbga-bench list planners`)")
+    ]
+    name: _Name | None = None
+    settings: dict[str, Any] = {}
+    budget: dict[str, Any] = {}
+    cold: bool = False
+
+
+class _File(_Table, frozen=True):
+    seeds: _Seeds
+    scenes: Annotated[
+        list[_SceneName | _Scene],
+        Meta(
+            min_length=1,
+            description="a list of names, files, or tables { scene = ..., seeds = ... }, "
+            "at least one",
+        ),
+    ]
+    planner: Annotated[list[_Planner], Meta(min_length=1, description="at least one [[planner]]")]
+    world: Annotated[list[_World], Meta(min_length=1, description="at least one [[world]]")] = []
+    name: _Name | None = None
+    description: str = ""
+    limits: dict[str, Any] = {}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Source:
+    """Where a matrix comes from, for errors.
+
+    file : name of the file.
+    document : what TOML holds there.
+    """
+
+    file: str
+    document: dict[str, Any]
+
+    def error(self, keys: Sequence[str | int], what: str) -> MatrixError:
+        """An error that names the place that some keys lead to, by the names that stand there."""
+        words: list[str] = []
+        place: Any = self.document
+        for key in keys:
+            place = place[key]
+            if isinstance(key, str):
+                words.append(key)
+            else:
+                names = place if isinstance(place, dict) else {}
+                name = names.get("name") or names.get("planner")
+                words[-1] += f" '{name}'" if name else f" {key + 1}"
+        return MatrixError(f"{', '.join([self.file, *words])}: {what}")
+
+
 def load_matrix(name_or_path: str | Path) -> Matrix:
     """Read a matrix and check all of it: every scene loads, every planner takes its settings.
 
@@ -241,61 +311,75 @@ def load_matrix(name_or_path: str | Path) -> Matrix:
         If anything in it can't be run. The message says what, where, and how to mend it.
     """
     path = matrix_file(name_or_path)
-    reader = Reader(path.name, read_toml(path))
-    reader.allow("name", "description", "scenes", "seeds", "world", "planner", "limits")
-    seeds = _seeds(reader)
-    named = _named_scenes(reader, seeds)
-    scenes, sources = _scenes(reader, [name for name, _ in named], path.parent)
-    worlds = _worlds(reader, scenes)
+    source = _Source(path.name, _read_toml(path))
+    try:
+        file = typed(source.document, _File)
+    except MisfitError as error:
+        raise source.error(_table_of(error.keys), str(error)) from error
+    seeds = _seeds(source, (), file.seeds)
+    named = _named_scenes(source, file, seeds)
+    scenes, sources = _scenes(source, [name for name, _ in named], path.parent)
+    worlds = _worlds(source, file, scenes)
     return Matrix(
-        name=reader.text("name", path.stem),
-        description=reader.text("description", ""),
+        name=file.name or path.stem,
+        description=file.description,
         scenes=scenes,
         sources=sources,
-        variants=_variants(reader, simulated=any(worlds)),
+        variants=_variants(source, file),
         seeds=seeds,
         scene_seeds=tuple(own for _, own in named),
-        limits=_built(Limits, reader.table("limits")),
+        limits=_built(Limits, file.limits, source, ("limits",)),
         worlds=worlds,
     )
 
 
-def _named_scenes(reader: Reader, seeds: tuple[int, ...]) -> list[tuple[str, tuple[int, ...]]]:
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise MatrixError(f"{path}: can't be read ({error.strerror}).") from error
+    except UnicodeDecodeError as error:
+        raise MatrixError(f"{path.name}: is not UTF-8 text (byte {error.start}).") from error
+    except tomllib.TOMLDecodeError as error:
+        raise MatrixError(f"{path.name}: not TOML: {error}.") from error
+
+
+def _table_of(keys: tuple[str | int, ...]) -> tuple[str | int, ...]:
+    """The table that a value stands in; the value's own name is in the text of the error."""
+    return keys[:-1] if keys and isinstance(keys[-1], str) else keys
+
+
+def _named_scenes(
+    source: _Source, file: _File, seeds: tuple[int, ...]
+) -> list[tuple[str, tuple[int, ...]]]:
     """The name or file of each scene as it is written, twins one by one, and its seeds."""
-    how = "give a list of names, files, or tables { scene = ..., seeds = ... }"
-    entries = reader.take("scenes", how)
-    good = isinstance(entries, list) and all(isinstance(entry, str | dict) for entry in entries)
-    if not good or not entries:
-        raise reader.error(f"scenes is {entries!r}. {how.capitalize()}, at least one.")
     named = []
-    for number, entry in enumerate(entries, 1):
-        table = Reader(reader.file, {"scene": entry} if isinstance(entry, str) else entry)
-        table = table.renamed(f"scene {number}")
-        table.allow("scene", "seeds")
-        name = table.text("scene", what="the name or the file of a scene")
-        own = _seeds(table) if "seeds" in table.values else seeds
+    for number, entry in enumerate(file.scenes):
+        scene = _Scene(entry) if isinstance(entry, str) else entry
+        keys = ("scenes", number)
+        own = seeds if scene.seeds is None else _seeds(source, keys, scene.seeds)
         try:
-            named += [(twin, own) for twin in expand_twins(name)]
+            named += [(twin, own) for twin in expand_twins(scene.scene)]
         except SceneError as error:
-            raise reader.error(f"scenes: {error}") from error
+            raise source.error(("scenes",), str(error)) from error
     return named
 
 
 def _scenes(
-    reader: Reader, entries: Sequence[str], folder: Path
+    source: _Source, entries: Sequence[str], folder: Path
 ) -> tuple[tuple[Scene, ...], tuple[str, ...]]:
-    sources = [_source(entry, folder) for entry in entries]
+    sources = [_scene_source(entry, folder) for entry in entries]
     scenes = []
-    for entry, source in zip(entries, sources, strict=True):
+    for entry, found in zip(entries, sources, strict=True):
         try:
-            scenes.append(load_scene(source))
+            scenes.append(load_scene(found))
         except SceneError as error:
-            raise reader.error(f"scenes: '{entry}': {error}") from error
-    _refuse_twins(reader, "scenes", [scene.name for scene in scenes])
+            raise source.error(("scenes",), f"'{entry}': {error}") from error
+    _refuse_twins(source, "scenes", [scene.name for scene in scenes])
     return tuple(scenes), tuple(sources)
 
 
-def _source(entry: str, folder: Path) -> str:
+def _scene_source(entry: str, folder: Path) -> str:
     if has_scene(entry):
         return entry
     if (folder / entry).exists():
@@ -310,119 +394,102 @@ def _source(entry: str, folder: Path) -> str:
 
 
 def _worlds(
-    reader: Reader, scenes: Sequence[Scene]
+    source: _Source, file: _File, scenes: Sequence[Scene]
 ) -> tuple[tuple[tuple[str, Mapping[str, Any]], ...], ...]:
     """(name, settings) of the worlds of each scene."""
-    if "world" not in reader.values:
+    if not file.world:
         return ((),) * len(scenes)
-    tables = reader.tables("world")
-    _refuse_twins(reader, "worlds", [table.text("name", what=WORLD) for table in tables])
+    _refuse_twins(source, "worlds", [world.name for world in file.world])
     found: dict[str, list[tuple[str, Mapping[str, Any]]]] = {scene.name: [] for scene in scenes}
-    for table in tables:
-        name = table.text("name")
-        table = table.renamed(f"world '{name}'")
-        table.allow("name", "scenes", "settings")
-        for scene in _scenes_of(table, scenes):
-            found[scene.name].append((name, _world_settings(table, scene)))
+    for number, world in enumerate(file.world):
+        keys = ("world", number)
+        for scene in _scenes_of(world, scenes, source, keys):
+            try:
+                settings = settings_as_data(world_settings(scene, world.settings))
+            except SceneError as error:
+                raise source.error((*keys, "settings"), str(error)) from error
+            found[scene.name].append((world.name, settings))
     for name, worlds in found.items():
         if not worlds:
-            raise reader.error(f"scenes: '{name}' is in none of the worlds. Name it in one.")
+            raise source.error(("scenes",), f"'{name}' is in none of the worlds. Name it in one.")
     return tuple(tuple(worlds) for worlds in found.values())
 
 
-def _scenes_of(table: Reader, scenes: Sequence[Scene]) -> Sequence[Scene]:
-    if "scenes" not in table.values:
+def _scenes_of(
+    world: _World, scenes: Sequence[Scene], source: _Source, keys: Sequence[str | int]
+) -> Sequence[Scene]:
+    if world.scenes is None:
         return scenes
-    names = table.texts("scenes")
     known = [scene.name for scene in scenes]
-    for name in names:
+    for name in world.scenes:
         if name not in known:
             hint = did_you_mean(name, known)
-            raise table.error(f"scenes: '{name}' is no scene of this matrix.{hint}")
-    return [scene for scene in scenes if scene.name in names]
+            what = f"'{name}' is no scene of this matrix.{hint}"
+            raise source.error((*keys, "scenes"), what)
+    return [scene for scene in scenes if scene.name in world.scenes]
 
 
-def _world_settings(table: Reader, scene: Scene) -> Mapping[str, Any]:
-    try:
-        return settings_as_data(world_settings(scene, table.table("settings").values))
-    except SceneError as error:
-        raise table.error(f"settings: {error}") from error
+def _seeds(
+    source: _Source, keys: Sequence[str | int], seeds: int | Sequence[int]
+) -> tuple[int, ...]:
+    if isinstance(seeds, int):
+        return tuple(range(seeds))
+    _refuse_twins(source, "seeds", seeds, keys)
+    return tuple(seeds)
 
 
-def _seeds(reader: Reader) -> tuple[int, ...]:
-    value = reader.take("seeds", "give a number of seeds, or a list of them")
-    if isinstance(value, bool) or not isinstance(value, int | list):
-        raise reader.error(f"seeds is {value!r}. Give a number of seeds, or a list of them.")
-    if isinstance(value, int):
-        if value < 1:
-            raise reader.error(f"seeds is {value}. Give 1 or more.")
-        return tuple(range(value))
-    if not value:
-        raise reader.error("seeds is empty. Give at least one.")
-    for seed in value:
-        if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-            raise reader.error(f"seeds: {seed!r} is no seed. Give whole numbers of 0 or more.")
-    _refuse_twins(reader, "seeds", value)
-    return tuple(value)
-
-
-def _variants(reader: Reader, *, simulated: bool) -> tuple[Variant, ...]:
-    tables = reader.tables("planner")
-    variants = [_variant(table, simulated=simulated) for table in tables]
-    _refuse_twins(reader, "planners", [variant.name for variant in variants])
+def _variants(source: _Source, file: _File) -> tuple[Variant, ...]:
+    variants = [
+        _variant(entry, source, ("planner", number)) for number, entry in enumerate(file.planner)
+    ]
+    _refuse_twins(source, "planners", [variant.name for variant in variants])
+    for number, variant in enumerate(variants):
+        if variant.cold and not file.world:
+            what = "cold is for simulated runs. Leave it out, or give the matrix a [[world]]."
+            raise source.error(("planner", number), what)
     return tuple(variants)
 
 
-def _variant(table: Reader, *, simulated: bool) -> Variant:
-    table.allow("name", "planner", "settings", "budget", *(["cold"] if simulated else []))
-    planner = table.text("planner", what=PLANNER)
-    table = table.renamed(f"planner '{table.values.get('name', planner)}'")
+def _variant(entry: _Planner, source: _Source, keys: tuple[str | int, ...]) -> Variant:
     known = planner_names()
-    if planner not in known:
-        hint = did_you_mean(planner, known)
-        raise table.error(
-            f"there is no planner '{planner}'. Installed: {', '.join(known)}; "
-            f"or give its file with --plugin.{hint}"
+    if entry.planner not in known:
+        raise source.error(
+            keys,
+            f"there is no planner '{entry.planner}'. Installed: {', '.join(known)}; "
+            f"or give its file with --plugin.{did_you_mean(entry.planner, known)}",
         )
     # The others are not imported: they bring libraries of their own.
-    plugin = planner_info(planner)
-    settings = table.table("settings").values
+    plugin = planner_info(entry.planner)
+    settings: Mapping[str, Any] = entry.settings
     if plugin.available:
         try:
-            planner_class = load_planner(planner)
-            settings = settings_as_dict(make_settings(planner_class, settings))
+            settings = settings_as_dict(make_settings(load_planner(entry.planner), settings))
         except PluginError as error:
-            raise table.error(f"settings: {error}") from error
+            raise source.error((*keys, "settings"), str(error)) from error
     return Variant(
-        name=table.text("name", planner),
+        name=entry.name or entry.planner,
         plugin=plugin,
         settings=settings,
-        budget=_built(Budget, table.table("budget")),
-        cold=table.flag("cold"),
+        budget=_built(Budget, entry.budget, source, (*keys, "budget")),
+        cold=entry.cold,
     )
 
 
-def _built(kind: Any, table: Reader) -> Any:
-    """A dataclass of numbers from a table, or an error that names the place."""
-    wanted = {field.name: field.type for field in fields(kind)}
-    table.allow(*wanted)
-    for name, value in table.values.items():
-        whole = "int" in str(wanted[name])
-        good = isinstance(value, int) if whole else isinstance(value, int | float)
-        if isinstance(value, bool) or not good:
-            what = "a whole number" if whole else "a number"
-            raise table.error(f"{name} is {value!r}. Give {what}.")
+def _built(
+    kind: type[T], values: Mapping[str, Any], source: _Source, keys: Sequence[str | int]
+) -> T:
+    """Budget or limits, from the table that some keys lead to."""
     try:
-        return kind(**table.values)
+        return dataclass_of(values, kind)
+    except MisfitError as error:
+        raise source.error(keys, str(error)) from error
     except ContractError as error:
-        raise table.error(str(error).removeprefix("budget: ")) from error
+        raise source.error(keys, str(error).removeprefix("budget: ")) from error
 
 
-def _refuse_twins(reader: Reader, what: str, names: Sequence[Any]) -> None:
-    for twin in _twins(names):
-        raise reader.error(f"two {what} are named '{twin}'. Give each a name of its own.")
-
-
-def _twins(names: Iterable[Any]) -> list[Any]:
-    names = list(names)
-    return [name for i, name in enumerate(names) if name in names[:i]]
+def _refuse_twins(
+    source: _Source, what: str, names: Sequence[Any], keys: Sequence[str | int] = ()
+) -> None:
+    twins = [name for i, name in enumerate(names) if name in names[:i]]
+    if twins:
+        raise source.error(keys, f"two {what} are named '{twins[0]}'. Give each a name of its own.")

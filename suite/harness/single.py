@@ -8,7 +8,8 @@ from typing import Any
 from suite.errors import KbgaBenchError
 from suite.harness.prepared import planner_class, prepared_scene
 from suite.planner import Budget, PlanStatus
-from suite.plugins.discovery import make_settings, planner_info, settings_as_dict
+from suite.plugins.discovery import planner_info
+from suite.plugins.settings import make_settings, settings_as_dict
 from suite.scenes.exact import shortest_path
 from suite.scenes.scene import scene_fingerprint
 from suite.simulation.record import from_data, settings_as_data

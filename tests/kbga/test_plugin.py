@@ -13,7 +13,7 @@ import shapely
 from kbga.plugin import KBGAPlanner, KBGAPlusPlanner
 from kbga.settings import KBGASettings
 from suite.planner import Budget, Plan, PlanStatus, Recorder
-from suite.plugins.discovery import make_settings, settings_as_dict
+from suite.plugins.settings import make_settings, settings_as_dict
 from suite.referee.path import judge
 from suite.scenes.scene import Scene
 from suite.store.record import canonical_json

@@ -9,7 +9,7 @@ from suite.conformance.finding import Finding, Outcome
 from suite.conformance.subject import Subject
 from suite.errors import PluginError
 from suite.planner import Budget
-from suite.plugins.discovery import make_settings, settings_as_dict
+from suite.plugins.settings import make_settings, settings_as_dict
 from suite.plugins.validation import NAME, flaw
 
 

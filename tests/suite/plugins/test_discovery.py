@@ -8,14 +8,8 @@ import pytest
 
 from suite.errors import PluginError
 from suite.planner import Plan, Planner, PlanStatus
-from suite.plugins.discovery import (
-    available_planners,
-    load_planner,
-    make_settings,
-    planner_names,
-    planner_version,
-    settings_as_dict,
-)
+from suite.plugins.discovery import available_planners, load_planner, planner_names, planner_version
+from suite.plugins.settings import make_settings, settings_as_dict
 
 GOOD = """
 from dataclasses import dataclass
@@ -294,7 +288,7 @@ def test_made_settings_are_frozen():
         ("elitist", 1, "true or false"),
         ("label", 3, "a string"),
         ("limit", "few", "a whole number or none"),
-        ("kind", "loose", "one of 'grid', 'free'"),
+        ("kind", "loose", "one of 'free', 'grid'"),
         ("weights", "1, x", "a list (a number, ...)"),
     ],
 )
