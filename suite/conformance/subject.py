@@ -6,7 +6,7 @@ path is judged. The scene that it is given is its own: the judge has another.
 
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -23,6 +23,7 @@ from suite.referee.clock import Clock
 from suite.referee.path import Referee, Verdict, flaw_of_path
 from suite.scenes.exact import shortest_path
 from suite.scenes.scene import Query, Scene
+from suite.typed import plain
 
 SEED = 1
 
@@ -309,8 +310,7 @@ def times(budget: Budget, factor: int) -> Budget:
 
 def _limits(budget: Budget) -> dict[str, Any]:
     """The limits that a budget sets, by name."""
-    limits = {field.name: getattr(budget, field.name) for field in fields(budget)}
-    return {name: limit for name, limit in limits.items() if limit is not None}
+    return {name: limit for name, limit in plain(budget).items() if limit is not None}
 
 
 def optimum(scene: SmallScene) -> float:

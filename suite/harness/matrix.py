@@ -51,15 +51,14 @@ from msgspec import Meta, Struct
 from suite.errors import ContractError, MatrixError, PluginError, SceneError, did_you_mean
 from suite.planner import Budget
 from suite.plugins.discovery import PluginInfo, load_planner, planner_info, planner_names
-from suite.plugins.settings import make_settings, settings_as_dict
+from suite.plugins.settings import make_settings
 from suite.scenes.catalogue import has_scene, load_scene
 from suite.scenes.geojson import SUFFIXES
 from suite.scenes.modifiers import MARK, expand_twins, split_modifiers
 from suite.scenes.scene import Scene, scene_fingerprint
-from suite.simulation.record import settings_as_data
 from suite.simulation.settings import world_settings
 from suite.store.record import Cell, World
-from suite.typed import MisfitError, T, dataclass_of, typed
+from suite.typed import MisfitError, T, dataclass_of, plain, typed
 
 FOLDER = Path(__file__).parent / "matrices"
 QUICK_SEEDS = 2
@@ -405,7 +404,7 @@ def _worlds(
         keys = ("world", number)
         for scene in _scenes_of(world, scenes, source, keys):
             try:
-                settings = settings_as_data(world_settings(scene, world.settings))
+                settings = plain(world_settings(scene, world.settings))
             except SceneError as error:
                 raise source.error((*keys, "settings"), str(error)) from error
             found[scene.name].append((world.name, settings))
@@ -463,7 +462,7 @@ def _variant(entry: _Planner, source: _Source, keys: tuple[str | int, ...]) -> V
     settings: Mapping[str, Any] = entry.settings
     if plugin.available:
         try:
-            settings = settings_as_dict(make_settings(load_planner(entry.planner), settings))
+            settings = plain(make_settings(load_planner(entry.planner), settings))
         except PluginError as error:
             raise source.error((*keys, "settings"), str(error)) from error
     return Variant(

@@ -1,6 +1,6 @@
 """One row again, from its own record: whether its path is the same."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -27,11 +27,6 @@ class Comparison:
     must_be_same: bool
     distance: float | None
     words: str
-
-    @property
-    def as_dict(self) -> dict[str, Any]:
-        """The same as plain data."""
-        return asdict(self)
 
 
 def compare(store: Path, again: RunRecord) -> Comparison:

@@ -14,10 +14,11 @@ from suite.planner import Plan, PlanAfresh, Planner, PlanStatus, Recorder, Repla
 from suite.referee.clock import Clock
 from suite.scenes.exact import shortest_path
 from suite.scenes.scene import Query, Scene
-from suite.simulation.record import as_data, settings_from_data
+from suite.simulation.record import as_data
 from suite.simulation.run import Replan, Simulation, simulate
-from suite.simulation.settings import Charge
+from suite.simulation.settings import Charge, WorldSettings
 from suite.store.record import RunRecord, World, canonical_json
+from suite.typed import dataclass_of
 
 _FAILURES = (PlanStatus.ERROR, PlanStatus.INVALID)
 """Ends of a single plan that are the planner's fault, whatever the world did."""
@@ -46,7 +47,7 @@ def simulated(blank: RunRecord, planner: Planner, rng: np.random.Generator) -> R
         raise ValueError("the cell has no world.")
     scene = prepared_scene(cell.scene_source)
     replanner = PlanAfresh(planner, rng) if cell.world.cold else planner.replanner(rng)
-    settings = settings_from_data(cell.world.settings)
+    settings = dataclass_of(cell.world.settings, WorldSettings)
     # The world is computed in the same process and never sleeps: who waited there waited anywhere.
     with Clock(Recorder()) as clock:
         done = simulate(scene, scene.query(cell.query), replanner, settings, cell.budget)
@@ -88,7 +89,7 @@ def exact_length(source: str, query: str, world: World) -> float | None:
 @lru_cache(maxsize=64)
 def _exact_length(source: str, query: str, settings: str) -> float | None:
     scene = prepared_scene(source)
-    world = replace(settings_from_data(json.loads(settings)), charge=Charge.ZERO)
+    world = replace(dataclass_of(json.loads(settings), WorldSettings), charge=Charge.ZERO)
     done = simulate(scene, scene.query(query), _Exact(), world)
     return done.trajectory.length if done.reached and not done.hits else None
 

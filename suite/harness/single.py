@@ -9,13 +9,14 @@ from suite.errors import KbgaBenchError
 from suite.harness.prepared import planner_class, prepared_scene
 from suite.planner import Budget, PlanStatus
 from suite.plugins.discovery import planner_info
-from suite.plugins.settings import make_settings, settings_as_dict
+from suite.plugins.settings import make_settings
 from suite.scenes.exact import shortest_path
 from suite.scenes.scene import scene_fingerprint
-from suite.simulation.record import from_data, settings_as_data
+from suite.simulation.record import from_data
 from suite.simulation.run import Simulation
 from suite.simulation.settings import world_settings
 from suite.store.record import Cell, RunRecord, World
+from suite.typed import plain
 
 COLD = "-cold"
 """What the name of a planner that is made to plan afresh ends in; part of its random stream."""
@@ -73,7 +74,7 @@ def cell_for(
         planner=planner,
         distribution=plugin.distribution,
         version=plugin.version,
-        settings=settings_as_dict(make_settings(found, settings or {})),
+        settings=plain(make_settings(found, settings or {})),
         budget=budget or Budget(),
         seed=seed,
         world=world,
@@ -99,8 +100,7 @@ def world_for(
     SceneError
         If scene or settings can't be used.
     """
-    settings = world_settings(prepared_scene(source), overrides)
-    return World("", settings_as_data(settings), cold)
+    return World("", plain(world_settings(prepared_scene(source), overrides)), cold)
 
 
 def parse_settings(pairs: Iterable[str]) -> dict[str, str]:
