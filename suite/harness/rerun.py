@@ -43,7 +43,7 @@ def compare(store: Path, again: RunRecord) -> Comparison:
     runs = read_runs(store)
     row = runs[runs["key"] == key].to_dict("records")[0]
     before, now = read_paths(store).get(key), again.path
-    same = row["status"] == again.status and _equal(before, now)
+    same = row["status"] == again.status and same_path(before, now)
     timed = again.cell.time_counts
     distance = None
     if before is not None and now is not None and len(before) > 1 and len(now) > 1:
@@ -74,7 +74,8 @@ def _in_words(
     return f"not the same: {ends}{costs}{apart}; {why}."
 
 
-def _equal(one: NDArray[np.float64] | None, other: NDArray[np.float64] | None) -> bool:
+def same_path(one: NDArray[np.float64] | None, other: NDArray[np.float64] | None) -> bool:
+    """Whether two paths are the same bit for bit, or both are missing."""
     if one is None or other is None:
         return one is None and other is None
     return bool(np.array_equal(one, other))
