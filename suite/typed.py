@@ -1,4 +1,4 @@
-"""Plain data, of TOML, JSON or a command line, as values of types.
+"""Plain data, of TOML, JSON or a command line, as values of types, and such values as plain data.
 
 msgspec converts and checks. The words are ours: an error says what stands there, and what to give.
 A field says in ``Annotated[..., Meta(description="...")]`` what it wants where its type does not.
@@ -79,6 +79,34 @@ def dataclass_of(data: Mapping[str, Any], kind: type[T]) -> T:
             what = f"{key} is {value!r}. Give {_given(inspect.type_info(hints[key]))}."
             raise MisfitError(error.keys, what) from error
     return kind(**values)
+
+
+def plain(value: Any) -> Any:
+    """A value as plain data, at any depth, as JSON gives it back.
+
+    Dataclasses and mappings become dicts, tuples and arrays lists, enumerations their values; what
+    is plain already, or nothing that is known here, stays what it is.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass
+    ... class WalkSettings:
+    ...     steps: tuple[float, ...] = (0.5, 1.0)
+    ...     retries: int | None = None
+    >>> plain(WalkSettings())
+    {'steps': [0.5, 1.0], 'retries': None}
+    """
+    if dataclasses.is_dataclass(value):
+        return {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, tuple | list):
+        return [plain(item) for item in value]
+    if isinstance(value, Mapping):
+        return {name: plain(item) for name, item in value.items()}
+    # numpy is not imported for it: a command that only lists has no arrays.
+    return value.tolist() if hasattr(value, "tolist") else value
 
 
 def in_words(kind: Any) -> str:

@@ -17,14 +17,13 @@ from suite.harness.matrix_file import (
 )
 from suite.planner import Budget
 from suite.plugins.discovery import PluginInfo, planner_info
-from suite.plugins.settings import make_settings, settings_as_dict
+from suite.plugins.settings import make_settings
 from suite.scenes.catalogue import has_scene, load_scene
 from suite.scenes.modifiers import MARK, SUFFIXES, expand_twins, split_modifiers
 from suite.scenes.scene import Scene, scene_fingerprint
-from suite.simulation.record import settings_as_data
 from suite.simulation.settings import world_settings
 from suite.store.record import Cell, World
-from suite.typed import MisfitError, T, dataclass_of
+from suite.typed import MisfitError, T, dataclass_of, plain
 
 QUICK_SEEDS = 2
 """Enough to see that every cell works and to have a spread at all."""
@@ -243,7 +242,7 @@ def _worlds(
         keys = ("world", number)
         for scene in _scenes_of(world, scenes, source, keys):
             try:
-                settings = settings_as_data(world_settings(scene, world.settings))
+                settings = plain(world_settings(scene, world.settings))
             except SceneError as error:
                 raise source.error((*keys, "settings"), str(error)) from error
             found[scene.name].append((world.name, settings))
@@ -297,7 +296,7 @@ def _variant(entry: PlannerEntry, source: Source, keys: tuple[str | int, ...]) -
     settings: Mapping[str, Any] = entry.settings
     if plugin.planner is not None:
         try:
-            settings = settings_as_dict(make_settings(plugin.planner, settings))
+            settings = plain(make_settings(plugin.planner, settings))
         except PluginError as error:
             raise source.error((*keys, "settings"), str(error)) from error
     return Variant(

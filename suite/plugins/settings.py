@@ -1,4 +1,4 @@
-"""The settings of a planner: from what a user wrote to its frozen dataclass, and to plain data.
+"""The settings of a planner: from what a user wrote to its frozen dataclass.
 
 A string is converted to the type that its field declares: it may come from the command line.
 """
@@ -6,7 +6,6 @@ A string is converted to the type that its field declares: it may come from the 
 import dataclasses
 import typing
 from collections.abc import Mapping
-from enum import Enum
 from typing import Any
 
 import msgspec
@@ -72,18 +71,6 @@ def make_settings(planner_class: type[Planner], mapping: Mapping[str, Any]) -> A
         raise PluginError(f"{owner}: {error}") from error
 
 
-def settings_as_dict(settings: Any) -> dict[str, Any]:
-    """Fields and values of a settings dataclass, in the order of its fields, as plain data.
-
-    Examples
-    --------
-    >>> from suite.planner import NoSettings
-    >>> settings_as_dict(NoSettings())
-    {}
-    """
-    return {f.name: _plain(getattr(settings, f.name)) for f in dataclasses.fields(settings)}
-
-
 def _field_types(planner_class: type[Planner]) -> dict[str, Any]:
     """Look up the declared type of each field that the settings take."""
     settings = planner_class.Settings
@@ -112,14 +99,3 @@ def _converted(value: Any, wanted: Any) -> Any:
         return msgspec.convert(value, wanted, strict=False)
     except msgspec.ValidationError:
         return msgspec.convert(word, wanted)
-
-
-def _plain(value: Any) -> Any:
-    """Enumerations as their values, tuples as lists, at any depth: as JSON gives them back."""
-    if isinstance(value, Enum):
-        return value.value
-    if isinstance(value, tuple | list):
-        return [_plain(v) for v in value]
-    if isinstance(value, Mapping):
-        return {k: _plain(v) for k, v in value.items()}
-    return value

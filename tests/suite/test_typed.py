@@ -1,15 +1,18 @@
 """Plain data as values of types: what fits, and what is said of what does not."""
 
+import json
 from dataclasses import dataclass
 from enum import Enum
+from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec import Meta, Struct
 
-from suite.typed import MisfitError, dataclass_of, in_words, typed
+from suite.typed import MisfitError, dataclass_of, in_words, plain, typed
 
 Share = Annotated[float, Meta(ge=0.0, le=1.0, description="a share from 0 to 1")]
 
@@ -145,3 +148,25 @@ def test_whatever_is_read_it_fits_or_one_error_says_where(data):
     for key in found.keys:
         place = place[key]
     assert str(found).endswith((".", "?"))
+
+
+@dataclass
+class Spot:
+    place: tuple[float, float]
+    gear: Gear = Gear.SLOW
+    size: float | None = None
+
+
+@pytest.mark.parametrize(
+    ("value", "wanted"),
+    [
+        (Spot((1.0, 2.0)), {"place": [1.0, 2.0], "gear": "slow", "size": None}),
+        ((Spot((0.0, 0.0)),), [{"place": [0.0, 0.0], "gear": "slow", "size": None}]),
+        (MappingProxyType({"rate": np.float64(0.5)}), {"rate": 0.5}),
+        (np.array([[1.0, 2.0]]), [[1.0, 2.0]]),
+        ({"nested": {"deep": (Gear.FAST,)}}, {"nested": {"deep": ["fast"]}}),
+    ],
+)
+def test_a_value_as_plain_data_is_what_json_gives_back(value, wanted):
+    assert plain(value) == wanted
+    assert json.loads(json.dumps(plain(value))) == wanted

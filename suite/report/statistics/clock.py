@@ -1,6 +1,6 @@
 """What a busy machine has spoilt: the one place that decides which rows the clock may speak of.
 
-A run is contended if it had no core for itself (see :mod:`suite.harness.contention`). Its times are
+A run is contended if it had no core for itself (see :mod:`suite.referee.clock`). Its times are
 then as much the machine's as the planner's: no table, rank or picture counts them. If wall time
 ended it, or moved its world on, the outcome is the machine's too, and nothing of the row counts.
 Counts and CPU time stay: others on the machine hardly change them.

@@ -12,8 +12,7 @@ import shapely
 
 from suite.errors import KbgaBenchError
 from suite.harness.cell import run_cell
-from suite.harness.single import cell_for
-from suite.harness.single_simulation import world_for
+from suite.harness.single import cell_for, world_for
 from suite.planner import PlanStatus
 from suite.report.all_tables import read_tables
 from suite.report.figures.style import NOTHING
