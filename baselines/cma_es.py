@@ -80,7 +80,7 @@ class CmaEsSettings:
                 raise ValueError(f"{setting.name} is {value}. It must be a number above 0.")
 
 
-class CmaEsPlanner(Planner):
+class CmaEsPlanner(Planner[CmaEsSettings]):
     """CMA-ES that minimises length plus penalty times the length inside obstacles.
 
     A run ends when it stagnates, or the package says so, and the last one ends the planner, unless

@@ -78,7 +78,7 @@ class ExtremitySettings:
             raise ValueError(f"most_vertices is {self.most_vertices}. It must be 1 or more.")
 
 
-class ExtremityPlanner(Planner):
+class ExtremityPlanner(Planner[ExtremitySettings]):
     """The package extremitypathfinder, given the free region that holds start and goal.
 
     Its polygons may neither touch nor overlap. So it is not given the obstacles, but the connected

@@ -59,7 +59,7 @@ class GridAstarSettings:
             raise ValueError(f"resolution is {self.resolution}. It must be 1 to {FINEST} cells.")
 
 
-class GridAstarPlanner(Planner):
+class GridAstarPlanner(Planner[GridAstarSettings]):
     """A* from cell centre to cell centre along free segments, by the package tcod.
 
     A grid without a path proves nothing: such a run is exhausted. Time is looked at before

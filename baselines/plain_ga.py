@@ -55,7 +55,7 @@ class PlainGASettings:
         )
 
 
-class PlainGAPlanner(Planner):
+class PlainGAPlanner(Planner[PlainGASettings]):
     """The GA without specialised operators that the paper compares with."""
 
     name = "plain-ga"

@@ -12,7 +12,7 @@ from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
 from suite.scenes.scene import Query, Scene, make_scene, scene_at
 
 
-class KBGAPlanner(Planner):
+class KBGAPlanner(Planner[KBGASettings]):
     """The knowledge-based genetic algorithm of Hu and Yang, as their paper has it."""
 
     name = "kbga"

@@ -1,7 +1,9 @@
 """The errors that a user can meet, and hints. A message says what, where, and how to mend it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from difflib import SequenceMatcher, get_close_matches
+from pathlib import Path
 
 LEAST_LETTERS = 2
 """Of what a name may begin with to be meant by it."""
@@ -36,6 +38,34 @@ class StoreError(KbgaBenchError):
 
 class HarnessError(KbgaBenchError):
     """The harness can't go on with a matrix."""
+
+
+@contextmanager
+def writing(file: Path, error: type[KbgaBenchError] = KbgaBenchError) -> Iterator[None]:
+    """Raise an error that names the file if the system refuses to write it."""
+    try:
+        yield
+    except OSError as cause:
+        raise error(f"{file}: can't be written ({cause.strerror}).") from cause
+
+
+def check_file(
+    file: Path, what: str, suffixes: Sequence[str], error: type[KbgaBenchError] = KbgaBenchError
+) -> None:
+    """Refuse a file of a kind that these things can't be, or in a folder that there is not.
+
+    Before anything is made for it, which may take long.
+
+    Examples
+    --------
+    >>> check_file(Path("a.bmp"), "figures", [".png", ".pdf"])
+    Traceback (most recent call last):
+    suite.errors.KbgaBenchError: a.bmp: figures are .png, .pdf. Name such a file.
+    """
+    if file.suffix.lower() not in suffixes:
+        raise error(f"{file}: {what} are {', '.join(suffixes)}. Name such a file.")
+    if not file.parent.is_dir():
+        raise error(f"{file}: there is no folder {file.parent}. Make it first.")
 
 
 def did_you_mean(word: str, words: Iterable[str]) -> str:

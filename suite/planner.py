@@ -22,10 +22,11 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum, nonmember
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import TypeVar
 
 from suite.errors import ContractError
 from suite.scenes.scene import Query, Scene
@@ -217,7 +218,11 @@ class NoSettings:
     """Settings of a planner that has none."""
 
 
-class Planner(ABC):
+SettingsT = TypeVar("SettingsT", default=Any)
+"""Of a planner's settings: in ``class Walk(Planner[WalkSettings])`` self.settings has that type."""
+
+
+class Planner(ABC, Generic[SettingsT]):
     """Base of all planners. Subclasses set ``name`` and write ``plan``."""
 
     name: ClassVar[str]
@@ -230,8 +235,8 @@ class Planner(ABC):
     """The version of this file that it is written for. Say it in a plugin that is installed by
     others: one for another version is then refused, with that reason."""
 
-    def __init__(self, settings: Any = None) -> None:
-        self.settings = self.Settings() if settings is None else settings
+    def __init__(self, settings: SettingsT | None = None) -> None:
+        self.settings: SettingsT = self.Settings() if settings is None else settings
         if not isinstance(self.settings, self.Settings):
             raise ContractError(
                 f"{self.name}: settings are {type(settings).__name__}, "
@@ -270,7 +275,7 @@ class Planner(ABC):
         Plan
         """
 
-    def warm_up(self) -> None:  # noqa: B027 (optional: empty by default)
+    def warm_up(self) -> None:
         """Compile and import whatever the first ``plan`` would; called outside the clock."""
 
     def replanner(self, rng: np.random.Generator) -> "Replanner":

@@ -1,19 +1,35 @@
-"""The tables of the README, made from results/: a test holds them to what stands there.
+"""Tables and figures of the READMEs, made from results/ and the matrices: a test holds the pages.
 
-python -m tests.readme prints them all.
+python -m tests.readme writes them into the pages. A table stands behind ``<!-- table: NAME -->``; a
+sentence is found by its words, and gets its figures. One whose words no longer stand anywhere is
+named: it has to be put in by hand.
 """
 
 import json
 import re
 import sys
+import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import fields
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
+from suite.conformance.rules import RULES
+from suite.report.statistics.inference import critical_difference
+
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "results"
+PAGES = (
+    ROOT / "README.md",
+    *(
+        page
+        for top in ("baselines", "kbga", "results", "suite")
+        for page in sorted((ROOT / top).rglob("README.md"))
+    ),
+)
 EXACT = {"visibility-graph", "extremitypathfinder"}
 OMPL = "ompl-"
 
@@ -23,11 +39,16 @@ def read(campaign: str, name: str) -> pd.DataFrame:
     return pd.read_csv(RESULTS / campaign / f"{name}.csv")
 
 
+def rows(campaign: str) -> pd.DataFrame:
+    """Return the runs of a campaign."""
+    return pd.read_parquet(RESULTS / campaign / "rows" / "runs.parquet")
+
+
 def markdown(head: Sequence[str], align: str, lines: Iterable[Sequence[str]]) -> str:
     """Return a table; ``align`` has a letter for each column."""
     rule = "|" + "|".join("---:" if a == "r" else "---" for a in align) + "|"
-    rows = ["| " + " | ".join(cells) + " |" for cells in (head, *lines)]
-    return "\n".join([rows[0], rule, *rows[1:]])
+    first, *others = ["| " + " | ".join(cells) + " |" for cells in (head, *lines)]
+    return "\n".join([first, rule, *others])
 
 
 def percent(value: float) -> str:
@@ -81,12 +102,12 @@ def alignment() -> str:
     """Mean gaps as drawn, moved and aligned, of both planners of ours."""
     frame = read("alignment", "alignment")
     lines = []
-    for scene, rows in frame.groupby("scene", sort=False):
+    for scene, here in frame.groupby("scene", sort=False):
         if str(scene).endswith("_aligned"):  # controls: they have columns of their own
             continue
         cells = [str(scene)]
         for planner in ("kbga", "kbga-plus"):
-            (row,) = rows[rows["planner"] == planner].to_dict("records")
+            (row,) = here[here["planner"] == planner].to_dict("records")
             drawn, moved, aligned = (
                 "" if np.isnan(row[name]) else f"{round(row[name], 2) + 0.0:.2f}"
                 for name in ("as drawn (%)", "moved (%)", "aligned (%)")
@@ -100,10 +121,10 @@ def alignment() -> str:
 
 def times() -> str:
     """Median time to 1 % of ours, and of the soonest of OMPL's: plain, tuned, with shortcuts."""
-    rows = read("all-planners", "ranking-rows")
+    ranked = read("all-planners", "ranking-rows")
     column = "time to 1 % median (ms)"
     lines = []
-    for scene, here in rows.groupby("scene", sort=False):
+    for scene, here in ranked.groupby("scene", sort=False):
         time = here.set_index("planner")[column]
         ompl = time[time.index.str.startswith(OMPL)]
         shortcut = ompl.index.str.startswith("ompl-shortcut")
@@ -180,6 +201,25 @@ def differences() -> str:
     return markdown(head, "lllrrrr", lines)
 
 
+def settings() -> str:
+    """The settings of the baselines: defaults, and what is called tuned."""
+    matrix = ROOT / "suite" / "harness" / "matrices" / "all-planners.toml"
+    variants = tomllib.loads(matrix.read_text(encoding="utf-8"))["planner"]
+    tuned = {v["planner"]: v["settings"] for v in variants if v.get("name", "").endswith("-tuned")}
+    lines = []
+    for plugin in entry_points(group="kbga_bench.planners"):
+        if plugin.module.startswith("baselines."):
+            named = fields(plugin.load().Settings)
+            # What has none of ours is left to the package, or off.
+            defaults = (
+                f.name if f.default is None else f"{f.name} = {json.dumps(f.default)}"
+                for f in named
+            )
+            others = (f"{k} = {json.dumps(v)}" for k, v in tuned.get(plugin.name, {}).items())
+            lines.append([f"`{plugin.name}`", ", ".join(defaults), ", ".join(others)])
+    return markdown(("planner", "settings", "tuned"), "lll", sorted(lines))
+
+
 TABLES: Mapping[str, Callable[[], str]] = {
     "gaps": gaps,
     "table 1": table_1,
@@ -188,12 +228,13 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "times": times,
     "dynamic": dynamic,
     "differences": differences,
+    "settings": settings,
 }
 
 
 def shares() -> str:
     """How much of RRT*'s time goes into answering it in Python."""
-    runs = pd.read_parquet(RESULTS / "paper-static" / "rows" / "runs.parquet")
+    runs = rows("paper-static")
     details = runs.loc[runs["variant"] == "ompl-rrtstar", "details"].map(json.loads)
     low, high = pd.Series([d["callback_share"] for d in details]).quantile([0.05, 0.95])
     return f"{low:.2f} to {high:.2f} of RRT*'s time"
@@ -216,11 +257,189 @@ def verdicts() -> str:
     return f"of {sum(words[w] for w in told if w in words)} figures {counts}"
 
 
+def bench() -> str:
+    """How many runs `make bench` makes."""
+    return f"paper-static ({len(rows('paper-static'))} runs)"
+
+
+def ranks() -> str:
+    """How far apart mean ranks must be."""
+    planners = len(read("all-planners", "ranking"))
+    scenes = rows("all-planners")["scene"].nunique()
+    apart = critical_difference(planners, scenes)
+    return (
+        f"Among the {planners} planners and settings of `all-planners`, mean ranks must be "
+        f"{apart:.1f} of {planners - 1} apart to differ"
+    )
+
+
+def nearer() -> str:
+    """On how many scenes OMPL's best end nearer to the optimum than kbga-plus."""
+    summary = read("all-planners", "summary")
+    gaps = summary.pivot_table("gap median (%)", index="scene", columns="planner")
+    shortcut, informed, tuned = (
+        int((gaps[f"ompl-{name}"] < gaps["kbga-plus"]).sum())
+        for name in ("shortcut", "informedrrtstar-tuned", "rrtstar-tuned")
+    )
+    return (
+        f"`ompl-shortcut` ends nearer to the optimum than `kbga-plus` on {shortcut} of {len(gaps)} "
+        f"scenes, tuned Informed RRT* on {informed}, tuned RRT* on {tuned}"
+    )
+
+
+def sooner() -> str:
+    """On how many scenes kbga-plus is the soonest within 1 %, but for the exact ones."""
+    ranked = read("all-planners", "ranking-rows").query("planner not in @EXACT")
+    times = ranked.pivot_table("time to 1 % median (ms)", index="scene", columns="planner")
+    first = times[np.isfinite(times).any(axis=1)].idxmin(axis=1)
+    number = int((first == "kbga-plus").sum())
+    return f"`kbga-plus` comes first but for the exact solver on {number} scenes"
+
+
+def every_planner() -> str:
+    """How many planners come with the suite."""
+    return f"runs the {rows('all-planners')['planner'].nunique()} planners that come with the suite"
+
+
+def rules() -> str:
+    """How many rules a planner is checked by."""
+    return f"# {len(RULES)} rules; how to mend"
+
+
+def simulated() -> str:
+    """How many robots drove."""
+    return f"In all {read('paper-dynamic', 'simulations')['runs'].sum()} runs of all planners"
+
+
+def experiments() -> str:
+    """How often an obstacle that has no impact changes the path all the same."""
+    frame = read("paper-dynamic", "paper-dynamic")
+    (row,) = frame[frame["what it shows"].str.startswith("B is detected")].to_dict("records")
+    return f"shorter in {row['runs'] - row['ours so']} of {row['runs']}"
+
+
+def answers() -> str:
+    """How fast robots were answered among the unknown obstacles, and how far one went for it."""
+    answered, fared = (
+        read("paper-dynamic", name).query("world == 'section III-E'").set_index("planner")
+        for name in ("replanning", "simulations")
+    )
+    latency = answered["latency median (ms)"]
+    soonest, exact = latency["ompl-rrtconnect"], latency["visibility-graph"]
+    way = 1.0 + fared["above exact (%)"]["ompl-rrtconnect"] / 100.0
+    return (
+        f"`kbga-plus` takes {latency['kbga-plus'] / soonest:.1f} times as long to answer as "
+        f"RRT-Connect, and {latency['kbga-plus'] / exact:.0f} times as long as the exact solver; "
+        f"RRT-Connect's robot goes {way:.1f} times the exact way"
+    )
+
+
+def ablation() -> str:
+    """What KBGA owes to crossover and mutation on zigzag."""
+    frame = read("ablation", "study-ablation-rows").query("settings == 'kbga'")
+    gap = frame[frame["scene"] == "zigzag"].set_index("switched off")["gap mean (%)"]
+    return f"comes to {gap['crossover, mutation']:.2f} % on `zigzag`, not {gap['nothing']:.2f} %"
+
+
+def resolution() -> str:
+    """What finer lattices bring, and cost."""
+    frame = read("resolution", "study-resolution-rows").set_index(["planner", "scene"])
+    gaps = ", ".join(f"{v:.2f}" for v in frame.loc[("kbga-plus", "zigzag"), "gap mean (%)"])
+    times = frame.loc[("kbga", "unstructured")]
+    return (
+        f"`kbga-plus` comes to {gaps} % on `zigzag`, which is what the lattice allows; times "
+        f"hardly rise (the paper's go as {_ratio(times['paper ratio'])} on `unstructured`, "
+        f"`kbga`'s as {_ratio(times['ratio total'])})"
+    )
+
+
+def obstacles() -> str:
+    """What more obstacles cost."""
+    frame = read("obstacles", "study-obstacles").set_index(["planner", "obstacles"])
+    of_ours, of_plus = frame.loc["kbga"], frame.loc["kbga-plus"]
+    few, most = of_ours.loc[[20, 30, 40]], 3000
+    return (
+        f"`kbga`'s times go as {_ratio(few['ratio total'])}, the paper's as "
+        f"{_ratio(few['paper ratio'])}; among 3,000 they are "
+        f"{of_ours['ratio total'][most]:.0f} times those among 20, `kbga-plus`'s "
+        f"{of_plus['ratio total'][most]:.0f} times, at gaps of "
+        f"{of_ours['gap mean (%)'][most]:.1f} and {of_plus['gap mean (%)'][most]:.1f} %"
+    )
+
+
+def _ratio(values: Iterable[float]) -> str:
+    return " : ".join(f"{value:.2f}".removesuffix(".00") for value in values)
+
+
+def mutation_rate() -> str:
+    """The plain GA's best mutation rate by the paper's way of choosing."""
+    row = read("mutation-rate", "study-mutation-rate-best").set_index("scene").loc["zigzag"]
+    best, theirs = row["best mutation rate"], row["paper's best"]
+    found = f"{row['feasible, best']:.0f} of 20 paths"
+    return f"on `zigzag`, {best:g} is best here ({found}) and {theirs:g} there"
+
+
+def one_round() -> str:
+    """What one round of the specialised operators does in the maze."""
+    found = read("readings", "summary").set_index(["scene", "planner"])["solved"]
+    whole, without = (
+        found[("maze", f"kbga-plain-rounds{end}")]
+        for end in ("", "-without-crossover-and-mutation")
+    )
+    return (
+        f"{whole} of 20 ways through the `maze`, and {without} of 20 without crossover and mutation"
+    )
+
+
 SENTENCES: Mapping[str, Callable[[], str]] = {
-    "shares": shares,
-    "statements": statements,
-    "verdicts": verdicts,
+    make.__name__: make
+    for make in (
+        shares,
+        statements,
+        verdicts,
+        bench,
+        ranks,
+        nearer,
+        sooner,
+        every_planner,
+        rules,
+        simulated,
+        experiments,
+        answers,
+        ablation,
+        resolution,
+        obstacles,
+        mutation_rate,
+        one_round,
+    )
 }
+
+TABLE = re.compile(r"<!-- table: (.+?) -->\n\n(?:\|.*\n)*\n?")
+FIGURE = re.compile(r"\d+(?:[.,]\d+)*")
+
+
+def rewritten(page: str) -> str:
+    """A page with its tables and the figures of its sentences as results/ has them."""
+    page = TABLE.sub(lambda found: f"<!-- table: {found[1]} -->\n\n{TABLES[found[1]]()}\n\n", page)
+    for make in SENTENCES.values():
+        page = with_figures(page, make())
+    return page
+
+
+def with_figures(page: str, sentence: str) -> str:
+    """A page with the figures of a sentence, where its words stand, however they are wrapped."""
+    words = [r"\s+".join(map(re.escape, re.split(r"\s+", w))) for w in FIGURE.split(sentence)]
+
+    def filled(found: re.Match[str]) -> str:
+        figures = iter(FIGURE.findall(sentence))
+        return FIGURE.sub(lambda _: next(figures), found[0])
+
+    return re.sub(FIGURE.pattern.join(words), filled, page)
+
+
+def pages() -> str:
+    """All pages, one after the other."""
+    return "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
 
 
 def folded(text: str) -> str:
@@ -229,5 +448,11 @@ def folded(text: str) -> str:
 
 
 if __name__ == "__main__":
-    for name, make in (TABLES | SENTENCES).items():
-        sys.stdout.write(f"## {name}\n\n{make()}\n\n")
+    for file in PAGES:
+        before = file.read_text(encoding="utf-8")
+        after = rewritten(before)
+        file.write_text(after, encoding="utf-8")
+        sys.stdout.write(f"{file.relative_to(ROOT)}: {'same' if after == before else 'changed'}\n")
+    for name, make in SENTENCES.items():
+        if make() not in folded(pages()):
+            sys.stdout.write(f"{name} stands nowhere: {make()}\n")

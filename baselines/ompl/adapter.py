@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ompl import base as ob
 from ompl import geometric as og
 from ompl import util as ou
+from typing_extensions import TypeVar
 
 from baselines.ends import ends_are_free
 from baselines.limits import time_is_over
@@ -40,7 +41,11 @@ SHORTEST_S = 1e-4
 """The least time that a condition is given."""
 
 
-class OmplPlanner(Planner):
+SettingsT = TypeVar("SettingsT", bound=OmplSettings, default=OmplSettings)
+"""Settings of a planner of OMPL."""
+
+
+class OmplPlanner(Planner[SettingsT]):
     """Base of all OMPL planners: set up the problem, run, and read the path."""
 
     abilities: ClassVar[Abilities] = Abilities(

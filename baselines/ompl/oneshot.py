@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from ompl import geometric as og
 
-from baselines.ompl.adapter import OmplPlanner, Problem
+from baselines.ompl.adapter import OmplPlanner, Problem, SettingsT
 from baselines.ompl.settings import A_SHARE, ABOVE_0, AT_LEAST_1, OmplSettings, bound, ours
 from baselines.ompl.simplification import simplify
 from suite.planner import Abilities, Recorder
 from suite.scenes.exact import path_length
 
 
-class OneShotPlanner(OmplPlanner):
+class OneShotPlanner(OmplPlanner[SettingsT]):
     """Base of the planners that end with their first path, or with the budget."""
 
     abilities: ClassVar[Abilities] = Abilities(budgets=OmplPlanner.abilities.budgets)
@@ -40,7 +40,7 @@ class SimplifiedSettings(OmplSettings):
     simplify: bool = ours(True)
 
 
-class SimplifiedPlanner(OneShotPlanner):
+class SimplifiedPlanner(OneShotPlanner[SimplifiedSettings]):
     """Base of the planners that stop at any path, which OMPL's simplifier then shortens."""
 
     Settings: ClassVar[type[Any]] = SimplifiedSettings

@@ -78,7 +78,7 @@ class PausableSampler(ob.ValidStateSampler):  # type: ignore[misc]
         return not self._pause.is_on and bool(self._uniform.sampleNear(state, near, distance))
 
 
-class RoadmapPlanner(OmplPlanner):
+class RoadmapPlanner(OmplPlanner[PRMstarSettings]):
     """Base of PRM and PRM*: a roadmap that grows, searched again and again.
 
     OMPL's own ``solve`` searches in a second thread while the first one grows the roadmap, and

@@ -53,7 +53,7 @@ class ShortcutSettings(OmplSettings):
     hopeless: float = ours(1.05, AT_LEAST_1)
 
 
-class ShortcutPlanner(OmplPlanner):
+class ShortcutPlanner(OmplPlanner[ShortcutSettings]):
     """RRT-Connect (Kuffner and LaValle 2000), shortcuts, restarts: the best path of all."""
 
     name: ClassVar[str] = "ompl-shortcut"

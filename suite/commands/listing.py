@@ -102,7 +102,7 @@ def matrix_for_people(row: dict[str, Any]) -> dict[str, Any]:
 
 def matrices_listing() -> list[dict[str, Any]]:
     """Each matrix of the catalogue: name, numbers of scenes, planners, seeds and runs, path."""
-    from suite.harness.outline import matrix_file, matrix_names, outline
+    from suite.harness.matrix_file import matrix_file, matrix_names, outline
 
     return [
         {"name": name, **outline(name), "path": str(matrix_file(name))} for name in matrix_names()

@@ -14,15 +14,6 @@ class TextFormat(StrEnum):
     JSON = "json"
 
 
-class TableFormat(StrEnum):
-    """How tables are printed; see :class:`suite.report.table.Format`."""
-
-    TABLE = "table"
-    CSV = "csv"
-    MARKDOWN = "markdown"
-    LATEX = "latex"
-
-
 SceneArgument = Annotated[
     str,
     typer.Argument(
@@ -60,7 +51,6 @@ ChecksOption = Annotated[
     int | None, typer.Option(help="Budget of a plan: collision checks, as questions asked.")
 ]
 TextStyle = Annotated[TextFormat, typer.Option("--format", help="For people or programs.")]
-TableStyle = Annotated[TableFormat, typer.Option("--format", help="How to print them.")]
 
 
 def use_plugins(references: list[str] | None) -> None:

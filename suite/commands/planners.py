@@ -77,8 +77,8 @@ def plan(
         with print_aside():
             record = run_cell(cell, recorder=recorder)
     else:
+        from suite.report.figures.files import check_figure_file
         from suite.report.figures.run import draw_record
-        from suite.report.figures.scene import check_figure_file
 
         check_figure_file(plot)
         with print_aside():
@@ -225,10 +225,11 @@ def simulate(
     Example: kbga-bench simulate door --planner kbga --seed 3 --speed 5 --animate door.gif
     """
     from suite.harness.cell import run_cell
-    from suite.harness.single import cell_for, parse_settings
-    from suite.harness.single_simulation import (
-        as_data,
-        as_text,
+    from suite.harness.single import (
+        cell_for,
+        parse_settings,
+        simulation_as_data,
+        simulation_as_text,
         simulation_of,
         unhurt,
         world_for,
@@ -237,7 +238,7 @@ def simulate(
 
     use_plugins(plugin)
     if plot is not None:
-        from suite.report.figures.scene import check_figure_file
+        from suite.report.figures.files import check_figure_file
 
         check_figure_file(plot)
     if animate is not None:
@@ -264,12 +265,12 @@ def simulate(
     with print_aside():
         record = run_cell(cell)
     if style is TextFormat.JSON:
-        print_json(as_data(record))
+        print_json(simulation_as_data(record))
     else:
-        typer.echo(as_text(record, updates=updates))
+        typer.echo(simulation_as_text(record, updates=updates))
     done = simulation_of(record) if plot is not None or animate is not None else None
     if done is not None and plot is not None:
-        from suite.report.figures.scene import save
+        from suite.report.figures.files import save
         from suite.report.figures.simulation import plot_snapshots
 
         with working(f"drawing {plot}"):

@@ -10,10 +10,8 @@ from typing import Annotated
 
 import typer
 
-from suite.commands.options import (
-    StoreArgument,
-    TableFormat,
-)
+from suite.commands.options import StoreArgument
+from suite.report.kinds import FigureFormat, Part, TableFormat
 
 ReferenceOption = Annotated[
     str | None,
@@ -31,24 +29,6 @@ class ExportFormat(StrEnum):
     CSV = "csv"
     OMPL_LOG = "ompl-log"
     PLANNER_ARENA = "planner-arena"
-
-
-class FigureFormat(StrEnum):
-    """Files that figures are written to."""
-
-    PNG = "png"
-    PDF = "pdf"
-    SVG = "svg"
-
-
-class Part(StrEnum):
-    """What a results folder can do without: rows, and pictures that stand in another folder."""
-
-    EVENTS = "events"
-    TRACES = "traces"
-    PATHS = "paths"
-    COMPARISONS = "comparisons"
-    PAPER_PICTURES = "paper-pictures"
 
 
 def tables(
@@ -73,18 +53,20 @@ def tables(
 
     Example: kbga-bench tables out/paper.db --only summary --only ranking
     """
-    from suite.report.results_folder import read_tables, write_tables
-    from suite.report.table import Format, named, render
+    from suite.report.all_tables import read_tables
+    from suite.report.formats import render
+    from suite.report.results_folder import write_tables
+    from suite.report.table import named
 
     found = named(read_tables(store, reference), only or [])
     hides = style is not TableFormat.CSV and not only
     hidden = [table.name for table in found if table.detail and hides]
     shown = [table for table in found if table.name not in hidden]
     if output is not None:
-        for path in write_tables(shown, output, Format(style)):
+        for path in write_tables(shown, output, style):
             typer.echo(path)
     else:
-        typer.echo("\n".join(render(table, Format(style)) for table in shown), nl=False)
+        typer.echo("\n".join(render(table, style) for table in shown), nl=False)
     if hidden:
         text = f"Left out, but with --only or --format csv: {', '.join(hidden)}."
         typer.echo(f"\n{text}", err=output is not None or style is not TableFormat.TABLE)
@@ -109,13 +91,13 @@ def compare(
     """
     import numpy as np
 
-    from suite.report.table import Format, render
+    from suite.report.formats import render
     from suite.report.tables.versions import BOOTSTRAP_SEED, compare_versions
     from suite.store.read import read_runs
 
     rng = np.random.default_rng(BOOTSTRAP_SEED)
     found = compare_versions(read_runs(old), read_runs(new), rng, with_times=times)
-    typer.echo(render(found.table, Format(style)), nl=False)
+    typer.echo(render(found.table, style), nl=False)
     typer.echo(f"\n{found.summary()}", err=style is not TableFormat.TABLE)
     raise typer.Exit(1 if found.worse else 0)
 
@@ -164,8 +146,7 @@ def results(
     """
     from suite.report.results_folder import write_results
 
-    left_out = {part.value for part in leave_out or []}
-    for path in write_results(store, directory, leave_out=left_out, figures=figures.value):
+    for path in write_results(store, directory, leave_out=set(leave_out or ()), figures=figures):
         typer.echo(path)
 
 

@@ -234,6 +234,7 @@ def rerun(
     from suite.harness.rerun import compare
     from suite.harness.single import as_data, as_text
     from suite.store.row_names import cell_of
+    from suite.typed import plain
 
     use_plugins(plugin)
     cell = cell_of(store, row)
@@ -249,7 +250,7 @@ def rerun(
         record = run_cell(cell)
     found = compare(store, record)
     if style is TextFormat.JSON:
-        print_json({**as_data(record), "key": cell.key, **found.as_dict})
+        print_json({**as_data(record), "key": cell.key, **plain(found)})
     else:
         typer.echo(f"{as_text(record)}\n  {found.words}")
     raise typer.Exit(0 if found.same or not found.must_be_same else 1)

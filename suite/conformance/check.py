@@ -4,7 +4,6 @@ The process tells of each rule before it begins it. If it then hangs, dies or ex
 broken, and the rules after it stay unlooked at: they would meet the same.
 """
 
-import contextlib
 import multiprocessing
 import os
 import signal
@@ -13,16 +12,16 @@ from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from typing import Any
 
-import psutil
-
 from suite.conformance import wording
 from suite.conformance.finding import Finding, Kind, Result
-from suite.conformance.rules import RULES, Rule, apply, claim_of, rule_name
+from suite.conformance.rules import RULES, apply, claim_of, rule_name
 from suite.conformance.rules_of.other_processes import same_path_in_another_process
 from suite.conformance.rules_of.runs import warms_up
-from suite.conformance.subject import Subject
+from suite.conformance.subject import Rule, Subject
 from suite.errors import PluginError
-from suite.plugins.discovery import load_planner, make_settings, planner_names
+from suite.plugins.discovery import load_planner, planner_names
+from suite.plugins.settings import make_settings
+from suite.processes.family import kill_family
 
 LIMIT_S = 30.0
 """What one rule may take, seconds: fifty times what it takes with a planner that is quick."""
@@ -75,7 +74,7 @@ def check(
             sender.close()
             return _collected(process, receiver, planner, limit_s)
     finally:
-        _kill(process.pid or 0)
+        kill_family(process.pid or 0)
         process.join(REAP_S)
 
 
@@ -219,17 +218,3 @@ def _ended(number: int, finding: Finding) -> list[Result]:
 
 def _unlooked_at(rule: Rule, reason: str) -> Result:
     return Result(rule_name(rule), claim_of(rule), Kind.NOT_APPLICABLE, reason=reason)
-
-
-def _kill(pid: int) -> None:
-    """SIGKILL for the process and all that it has started."""
-    family: list[psutil.Process] = []
-    with contextlib.suppress(psutil.Error):
-        root = psutil.Process(pid)
-        family = [*root.children(recursive=True), root]
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        # A child that is not yet its own group has no group of this number.
-        os.killpg(pid, signal.SIGKILL)
-    for process in family:
-        with contextlib.suppress(psutil.Error):
-            process.kill()

@@ -19,8 +19,8 @@ from functools import lru_cache
 from typing import Any, ClassVar
 
 from suite.conformance.finding import Kind, Result
-from suite.conformance.rules import RULES, Rule, apply
-from suite.conformance.subject import Subject
+from suite.conformance.rules import RULES, apply
+from suite.conformance.subject import Rule, Subject
 from suite.planner import Planner
 
 

@@ -26,6 +26,10 @@ class NotApplicable:
     reason: str
 
 
+Outcome = Finding | NotApplicable | None
+"""What a rule says of a planner; None if it is kept."""
+
+
 class Kind(StrEnum):
     """What came of a rule, in a word."""
 

@@ -1,6 +1,6 @@
 """The contract: all rules, in the order in which they are looked at."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from suite.conformance.finding import Finding, Kind, NotApplicable, Result
 from suite.conformance.rules_of import (
@@ -12,9 +12,7 @@ from suite.conformance.rules_of import (
     runs,
     side_effects,
 )
-from suite.conformance.subject import Subject
-
-Rule = Callable[[Subject], Finding | NotApplicable | None]
+from suite.conformance.subject import Rule, Subject
 
 FIRST: tuple[Rule, ...] = (declaration.is_a_planner, declaration.abilities_are_known, runs.warms_up)
 """Without these nothing can be run, and no other rule says anything."""

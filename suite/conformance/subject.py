@@ -4,24 +4,26 @@ A run here goes as in the harness: a planner is built and warmed up, may refuse,
 path is judged. The scene that it is given is its own: the judge has another.
 """
 
-import time
 import traceback
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
+from suite.conformance.finding import Outcome
 from suite.conformance.small_scenes import SmallScene, asked, small_scenes
 from suite.conformance.surroundings import Surroundings, fingerprint
 from suite.errors import ContractError
 from suite.planner import Budget, Plan, Planner, PlanStatus, Recorder, refusal
 from suite.processes.random_state import seed_globals
-from suite.referee.claims import as_checks, as_count
-from suite.referee.path import Referee, Verdict
+from suite.referee.claims import plain_plan
+from suite.referee.clock import Clock
+from suite.referee.path import Referee, Verdict, flaw_of_path
 from suite.scenes.exact import shortest_path
 from suite.scenes.scene import Query, Scene
+from suite.typed import plain
 
 SEED = 1
 
@@ -103,10 +105,10 @@ class Trial:
         """Whether it was refused with a reason."""
         return isinstance(self.run.refusal, str) and bool(self.run.refusal.strip())
 
-    @property
+    @cached_property
     def plan(self) -> Plan | None:
-        """What was returned, if it has the form of a plan."""
-        return self.run.returned if form_of(self.run.returned) is None else None
+        """What was returned, in plain numbers, if it has the form of a plan."""
+        return None if form_of(self.run.returned) else plain_plan(self.run.returned)
 
     @property
     def ends(self) -> bool:
@@ -256,6 +258,10 @@ class Subject:
         return Trial(scene, budget, seed, done, drew, changed, before, after)
 
 
+Rule = Callable[[Subject], Outcome]
+"""A function whose name and docstring are the name and the claim of the rule."""
+
+
 def _run(
     build: Callable[[], Planner], scene: Scene, budget: Budget, rng: np.random.Generator
 ) -> Run:
@@ -277,12 +283,9 @@ def _run(
 
 def timed(plan: Callable[[], Any], recorder: Recorder) -> Run:
     """Plan within the clock; whatever is raised passes."""
-    recorder.start_clock()
-    started, cpu = recorder.started, time.process_time()
-    returned = plan()
-    wall_s, cpu_s = time.perf_counter() - started, time.process_time() - cpu
-    restarted = recorder.started != started
-    return Run(recorder, None, returned, None, wall_s, cpu_s, restarted=restarted)
+    with Clock(recorder) as clock:
+        returned = plan()
+    return Run(recorder, None, returned, None, clock.wall_s, clock.cpu_s, restarted=clock.restarted)
 
 
 def failed(recorder: Recorder) -> Run:
@@ -293,31 +296,11 @@ def failed(recorder: Recorder) -> Run:
 
 def form_of(returned: Any) -> str | None:
     """What is wrong with the form of what ``plan`` returned; None if nothing is."""
-    if not isinstance(returned, Plan):
-        return f"plan returned {type(returned).__name__}"
-    if returned.status not in PlanStatus.CLAIMABLE:
-        return f"the status of the plan is {returned.status!r}"
     try:
-        for name in ("generations", "generation_of_best"):
-            as_count(getattr(returned, name), f"{name} of the plan")
-        as_checks(returned)
+        plan = plain_plan(returned)
     except ContractError as error:
         return str(error)
-    if not isinstance(returned.claimed_cost, int | float | np.number | None):
-        return f"claimed_cost of the plan is a {type(returned.claimed_cost).__name__}"
-    if not isinstance(returned.details, Mapping):
-        return f"details of the plan are a {type(returned.details).__name__}, not a mapping"
-    if not all(isinstance(value, int | float | np.number) for value in returned.details.values()):
-        return f"details of the plan are {returned.details!r}, which are not all numbers"
-    if returned.path is None:
-        return "the plan is 'solved' and has no path" if returned.status == "solved" else None
-    try:
-        path = np.asarray(returned.path, dtype=np.float64)
-    except (TypeError, ValueError):
-        return f"the path is a {type(returned.path).__name__} that is no array of numbers"
-    if path.ndim != 2 or path.shape[1] != 2 or len(path) < 1 or not np.isfinite(path).all():
-        return f"the path has the shape {path.shape}, or numbers that are not finite"
-    return None
+    return None if plan.path is None else flaw_of_path(plan.path)
 
 
 def times(budget: Budget, factor: int) -> Budget:
@@ -327,8 +310,7 @@ def times(budget: Budget, factor: int) -> Budget:
 
 def _limits(budget: Budget) -> dict[str, Any]:
     """The limits that a budget sets, by name."""
-    limits = {field.name: getattr(budget, field.name) for field in fields(budget)}
-    return {name: limit for name, limit in limits.items() if limit is not None}
+    return {name: limit for name, limit in plain(budget).items() if limit is not None}
 
 
 def optimum(scene: SmallScene) -> float:

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from suite.errors import ContractError, PluginError, SceneError
+from suite.errors import ContractError, PluginError
 from suite.geometry.tolerances import COST_CLAIM_RELATIVE
-from suite.harness.contention import waited
 from suite.harness.prepared import (
     build_planner,
     exact_optimum,
@@ -22,7 +21,9 @@ from suite.harness.prepared import (
 from suite.harness.provenance import host_name, load_average
 from suite.harness.simulated_cell import simulated
 from suite.planner import Plan, PlanStatus, Recorder, refusal
-from suite.referee.claims import as_checks, as_count, improvements, trace
+from suite.referee.claims import improvements, plain_plan, trace
+from suite.referee.clock import Clock
+from suite.scenes.catalogue import scene_as_it_was
 from suite.scenes.scene import Query, scene_fingerprint
 from suite.store.record import Cell, RunRecord
 
@@ -82,10 +83,9 @@ def _blank(cell: Cell) -> RunRecord:
 def _run(
     cell: Cell, blank: RunRecord, recorder: Recorder, before_plan: Callable[[], None]
 ) -> RunRecord:
-    scene = prepared_scene(cell.scene_source)
-    query = scene.query(cell.query)
-    if scene_fingerprint(scene, query) != cell.scene_hash:
-        raise SceneError(f"{cell.scene_source}: is not the scene any more that it was at first.")
+    scene, query = scene_as_it_was(
+        cell.scene_source, cell.query, cell.scene_hash, load=prepared_scene
+    )
     planner = build_planner(cell.planner, cell.settings)
     planner.warm_up()
     reason = refusal(planner, scene, query, cell.budget)
@@ -95,59 +95,43 @@ def _run(
     before_plan()
     if cell.world is not None:
         return simulated(blank, planner, rng)
-    recorder.start_clock()
-    started = recorder.started
-    plan = planner.plan(scene, query, cell.budget, rng, recorder)
-    # The one clock stops here: nothing may come between these lines.
-    wall_s, cpu_s = recorder.wall_s(), recorder.cpu_s()
+    with Clock(recorder) as clock:
+        plan = planner.plan(scene, query, cell.budget, rng, recorder)
     measured = replace(
         blank,
-        wall_s=wall_s,
-        cpu_s=cpu_s,
-        contended=waited(wall_s, cpu_s),
+        wall_s=clock.wall_s,
+        cpu_s=clock.cpu_s,
+        contended=clock.contended,
         optimum=exact_optimum(cell.scene_source, cell.query),
     )
     try:
         # Arrays are read-only, but numpy lets their owner change that.
         if scene_fingerprint(scene, query) != cell.scene_hash:
             raise ContractError("plan changed the start or the goal in place.")
-        if recorder.started != started:
+        if clock.restarted:
             raise ContractError("plan started the clock anew. That is for the harness to do.")
-        measured = replace(
-            measured, improvements=improvements(recorder, wall_s), trace=trace(recorder)
-        )
-        return _judged(query, _with_plan(measured, _checked(plan)), plan)
+        reports = improvements(recorder, clock.wall_s)
+        measured = replace(measured, improvements=reports, trace=trace(recorder))
+        return _judged(query, measured, plain_plan(plan))
     except ContractError as error:
         return replace(measured, reason=str(error))
-
-
-def _checked(plan: Any) -> Plan:
-    if not isinstance(plan, Plan):
-        raise ContractError(f"plan returned {type(plan).__name__}. It must return a Plan.")
-    if plan.status not in PlanStatus.CLAIMABLE:
-        allowed = ", ".join(PlanStatus.CLAIMABLE)
-        raise ContractError(f"plan returned the status {plan.status!r}. It may claim {allowed}.")
-    return plan
 
 
 def _with_plan(record: RunRecord, plan: Plan) -> RunRecord:
     """The record with what the planner says of its run; nothing of it is judged yet."""
     best = record.improvements[-1] if record.improvements else None
-    checks, computed_checks = as_checks(plan)
+    generation_of_best = plan.generation_of_best
+    if generation_of_best is None and best is not None:
+        generation_of_best = best.generation
     return replace(
         record,
-        status=PlanStatus(plan.status),
-        claimed_cost=_number(plan.claimed_cost),
-        generations=as_count(plan.generations, "generations of the plan"),
-        generation_of_best=as_count(
-            best.generation
-            if plan.generation_of_best is None and best is not None
-            else plan.generation_of_best,
-            "generation_of_best of the plan",
-        ),
-        checks=checks,
-        computed_checks=computed_checks,
-        details={str(k): float(v) for k, v in plan.details.items()},
+        status=plan.status,
+        claimed_cost=plan.claimed_cost,
+        generations=plan.generations,
+        generation_of_best=generation_of_best,
+        checks=plan.checks,
+        computed_checks=plan.computed_checks,
+        details=plan.details,
         path=_as_path(plan.path),
         # A planner that reports nothing found its best when it ended.
         time_to_best_s=record.wall_s if best is None else best.wall_s,
@@ -155,14 +139,13 @@ def _with_plan(record: RunRecord, plan: Plan) -> RunRecord:
     )
 
 
-def _judged(query: Query, record: RunRecord, plan: Plan) -> RunRecord:
+def _judged(query: Query, measured: RunRecord, plan: Plan) -> RunRecord:
+    record = _with_plan(measured, plan)
     if record.status is PlanStatus.INFEASIBLE and record.optimum is not None:
         reason = f"claims that there is no path; the shortest has {record.optimum:.6g} m."
         return replace(record, status=PlanStatus.INVALID, reason=reason)
     if record.status is not PlanStatus.SOLVED:
         return replace(record, time_to_best_s=None, cpu_to_best_s=None)
-    if plan.path is None:
-        raise ContractError("plan says 'solved' and returns no path.")
     verdict = referee(record.cell.scene_source).judge(query, plan.path)
     if verdict.length is None:
         return replace(record, status=PlanStatus.INVALID, reason=verdict.reason)
@@ -184,10 +167,6 @@ def _gap(cost: float, optimum: float | None) -> float | None:
         return None
     # Start and goal may be one place.
     return cost / optimum - 1.0 if optimum > 0.0 else (0.0 if cost == 0.0 else None)
-
-
-def _number(value: Any) -> float | None:
-    return None if value is None else float(value)
 
 
 def _as_path(path: Any) -> NDArray[np.float64] | None:

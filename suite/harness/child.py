@@ -2,19 +2,18 @@
 
 import contextlib
 import fcntl
-import multiprocessing
 import os
 import select
 import signal
 import traceback
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
-from multiprocessing import forkserver
 from multiprocessing.connection import Connection
 
 from suite.harness.cell import run_cell
 from suite.planner import PlanStatus, Recorder
 from suite.processes.family import adopt_orphans, has_children
+from suite.processes.multiprocessing_private import leave_server, parent_pipe
 from suite.processes.random_state import seed_globals
 from suite.store.record import Cell, RunRecord
 
@@ -26,7 +25,7 @@ ORPHAN_S = 3600
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Outcome:
+class LastMessage:
     """The last message of a process.
 
     alone : whether nothing descends from the process that would outlive it.
@@ -38,7 +37,7 @@ class Outcome:
 
 def run_in_child(
     cell: Cell,
-    messages: "Connection[str | Outcome, None]",
+    messages: "Connection[str | LastMessage, None]",
     stderr: "Connection[None, None]",
     core: int | None,
     snapshots_of: Collection[int] = (),
@@ -49,7 +48,7 @@ def run_in_child(
     ----------
     cell : Cell
     messages : Connection
-        Takes PLANNING, then the Outcome.
+        Takes PLANNING, then the LastMessage.
     stderr : Connection
         Takes what the process writes to its standard error.
     core : int, optional
@@ -70,7 +69,7 @@ def run_in_child(
     # A planner that forks may come back twice.
     if os.getpid() == process:
         record = replace(record, snapshots=tuple(recorder.snapshots))
-        messages.send(Outcome(record, alone=not has_children()))
+        messages.send(LastMessage(record, alone=not has_children()))
     # Without the interpreter's farewell: destructors of a planner's libraries may hang or crash,
     # and threads that it left running would be waited for.
     os._exit(0)
@@ -93,13 +92,7 @@ def _become_own_group() -> None:
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
     adopt_orphans()
-    # What is left of the fork server's own pipe: it tells the server that somebody needs it, which
-    # is not for a run to say, and the server dies of what is written into it.
-    server = forkserver._forkserver
-    alive = getattr(server, "_forkserver_alive_fd", None)
-    if alive is not None:
-        os.close(alive)
-        vars(server)["_forkserver_alive_fd"] = None
+    leave_server()
 
 
 def _pin(core: int | None) -> None:
@@ -120,15 +113,14 @@ def _redirect_output(stderr: int) -> None:
 def _die_with_parent() -> None:
     """Have the kernel kill this process group when the harness dies, kill -9 included.
 
-    The sentinel is a pipe whose other end only the harness holds. A thread that watches it would
-    starve while a planner holds the GIL, and PR_SET_PDEATHSIG watches the fork server, which
-    outlives the harness as long as a child does; a signal on the pipe's closing does neither.
+    A thread that watches the harness's pipe would starve while a planner holds the GIL, and
+    PR_SET_PDEATHSIG watches the fork server, which outlives the harness as long as a child does; a
+    signal on the pipe's closing does neither.
     """
-    parent = multiprocessing.parent_process()
-    if parent is None or not hasattr(fcntl, "F_SETSIG"):
+    pipe = parent_pipe()
+    if pipe is None or not hasattr(fcntl, "F_SETSIG"):
         signal.alarm(ORPHAN_S)
         return
-    pipe = int(parent.sentinel)
     fcntl.fcntl(pipe, fcntl.F_SETOWN, -os.getpgrp())
     fcntl.fcntl(pipe, fcntl.F_SETSIG, signal.SIGKILL)
     fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)

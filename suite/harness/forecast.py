@@ -12,12 +12,12 @@ from suite.harness.run import Which, to_run
 from suite.processes.cores import honest_jobs
 from suite.store.read import read_runs
 from suite.store.record import Cell
+from suite.store.schema import columns_now
 
 OVERHEAD_S = 0.03
 """Process, referee and store, for each run; about what `make harness` measures."""
 
-
-NOTHING = pd.DataFrame(columns=["key", "status", "scene", "variant", "wall_s"])
+NOTHING = pd.DataFrame(columns=list(columns_now("runs")))
 """The rows of a store that is not there yet."""
 
 

@@ -14,13 +14,9 @@ import gc
 import json
 import os
 import signal
-import sys
 import time
-import types
-import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
-from importlib.machinery import ModuleSpec
 from typing import Any
 
 import psutil
@@ -29,6 +25,7 @@ from suite.harness.prepared import build_planner, exact_optimum, prepared_scene,
 from suite.harness.provenance import ONE_THREAD
 from suite.processes.family import adopt_orphans, kill_family, kill_group
 from suite.processes.memory import MemoryWatch
+from suite.processes.multiprocessing_private import ignore_orphan_warning, stand_in_for_main
 from suite.processes.output import end_quietly
 
 VARIABLE = "KBGA_BENCH_WARM"
@@ -64,7 +61,7 @@ class Warmth:
 def warm(wanted: Mapping[str, Any]) -> None:
     """Make ready what a :class:`Warmth`, as plain data, asks for."""
     _become_server()
-    _stand_in_for_main(*wanted["main"])
+    stand_in_for_main(*wanted["main"])
     for source, query in wanted["queries"]:
         # A scene that can't be loaded is reported by the runs that want it.
         with contextlib.suppress(Exception):
@@ -90,8 +87,7 @@ def _become_server() -> None:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     adopt_orphans()
-    # It says so of each orphan that it reaps.
-    warnings.filterwarnings("ignore", message="forkserver: waitpid returned unexpected pid")
+    ignore_orphan_warning()
     end_quietly()
     atexit.register(_end_children)
 
@@ -161,20 +157,6 @@ def _silence() -> Iterator[None]:
             os.dup2(copy, stream)
             os.close(copy)
         os.close(nowhere)
-
-
-def _stand_in_for_main(name: str | None, file: str | None) -> None:
-    """Put an empty ``__main__`` where multiprocessing looks for the user's.
-
-    It runs the user's script again in each child, so that what is defined there can be unpickled.
-    Nothing of ours is defined there, the import costs every run, and a script without an
-    ``if __name__ == "__main__"`` would start the whole benchmark again.
-    """
-    module = types.ModuleType("__main__")
-    module.__spec__ = None if name is None else ModuleSpec(name, None)
-    if file is not None:
-        module.__file__ = file
-    sys.modules["__main__"] = module
 
 
 if VARIABLE in os.environ:

@@ -1,72 +1,29 @@
-"""A matrix: which scenes, planner variants and seeds are to be run, and its expansion into cells.
+"""A matrix: what is to be run, checked, and its expansion into cells."""
 
-The file
---------
-A TOML file::
-
-    name = "walls"
-    description = "What it is for."
-    scenes = ["zigzag", "my_scene.geojson"]  # catalogue names, or paths relative to this file
-    seeds = 20                               # 0 to 19; or a list of seeds
-
-    [limits]                                 # optional; see Limits
-    grace_s = 10
-
-    [[planner]]
-    name = "kbga-small"                      # of the variant; default: the planner's own
-    planner = "kbga"
-    settings = {population_size = 20}        # what is left out keeps its default
-    budget = {generations = 200}             # fields of Budget; none: its own stop
-
-Every query of every scene is run with every variant and every seed.
-
-A scene may be modified, as in ``zigzag@turn=17`` (see :mod:`suite.scenes.modifiers`), and a range
-of twins stands for as many scenes. With a table in place of its name, a scene has seeds of its own,
-so that several twins need not make the matrix as many times as large::
-
-    scenes = ["zigzag", { scene = "zigzag@twin=1..10", seeds = 5 }]
-
-A matrix of simulated runs names worlds. Then every scene is driven through in each of its worlds,
-and the budget is that of each single plan::
-
-    [[world]]
-    name = "fast robot"
-    scenes = ["door"]                        # default: all
-    settings = {speed = 5.0}                 # of WorldSettings; the rest as the scene wants it
-
-    [[planner]]
-    name = "kbga-cold"
-    planner = "kbga"
-    cold = true                              # plan afresh, though it could go on from what it knows
-"""
-
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
 from suite.errors import ContractError, PluginError, SceneError, did_you_mean
-from suite.harness.outline import matrix_file
-from suite.harness.toml_reader import Reader, read_toml
-from suite.planner import Budget
-from suite.plugins.discovery import (
-    PluginInfo,
-    load_planner,
-    make_settings,
-    planner_info,
-    planner_names,
-    settings_as_dict,
+from suite.harness.matrix_file import (
+    MatrixFile,
+    PlannerEntry,
+    SceneEntry,
+    Source,
+    WorldEntry,
+    matrix_file,
+    read_matrix_file,
 )
+from suite.planner import Budget
+from suite.plugins.discovery import PluginInfo, planner_info
+from suite.plugins.settings import make_settings
 from suite.scenes.catalogue import has_scene, load_scene
 from suite.scenes.modifiers import MARK, SUFFIXES, expand_twins, split_modifiers
 from suite.scenes.scene import Scene, scene_fingerprint
-from suite.simulation.record import settings_as_data
 from suite.simulation.settings import world_settings
 from suite.store.record import Cell, World
-
-PLANNER = "the name of a planner (see `kbga-bench list planners`)"
-WORLD = "the world a name, for tables"
-"""What a text that is missing would be."""
+from suite.typed import MisfitError, T, dataclass_of, plain
 
 QUICK_SEEDS = 2
 """Enough to see that every cell works and to have a spread at all."""
@@ -199,7 +156,7 @@ def load_matrix(name_or_path: str | Path) -> Matrix:
     Parameters
     ----------
     name_or_path : str or Path
-        One of :func:`suite.harness.outline.matrix_names`, or a file in the format of this module.
+        One of the catalogue, or a file in the format of :mod:`suite.harness.matrix_file`.
 
     Returns
     -------
@@ -211,61 +168,55 @@ def load_matrix(name_or_path: str | Path) -> Matrix:
         If anything in it can't be run. The message says what, where, and how to mend it.
     """
     path = matrix_file(name_or_path)
-    reader = Reader(path.name, read_toml(path))
-    reader.allow("name", "description", "scenes", "seeds", "world", "planner", "limits")
-    seeds = _seeds(reader)
-    named = _named_scenes(reader, seeds)
-    scenes, sources = _scenes(reader, [name for name, _ in named], path.parent)
-    worlds = _worlds(reader, scenes)
+    source, file = read_matrix_file(path)
+    seeds = _seeds(source, (), file.seeds)
+    named = _named_scenes(source, file, seeds)
+    scenes, sources = _scenes(source, [name for name, _ in named], path.parent)
+    worlds = _worlds(source, file, scenes)
     return Matrix(
-        name=reader.text("name", path.stem),
-        description=reader.text("description", ""),
+        name=file.name or path.stem,
+        description=file.description,
         scenes=scenes,
         sources=sources,
-        variants=_variants(reader, simulated=any(worlds)),
+        variants=_variants(source, file),
         seeds=seeds,
         scene_seeds=tuple(own for _, own in named),
-        limits=_built(Limits, reader.table("limits")),
+        limits=_built(Limits, file.limits, source, ("limits",)),
         worlds=worlds,
     )
 
 
-def _named_scenes(reader: Reader, seeds: tuple[int, ...]) -> list[tuple[str, tuple[int, ...]]]:
+def _named_scenes(
+    source: Source, file: MatrixFile, seeds: tuple[int, ...]
+) -> list[tuple[str, tuple[int, ...]]]:
     """The name or file of each scene as it is written, twins one by one, and its seeds."""
-    how = "give a list of names, files, or tables { scene = ..., seeds = ... }"
-    entries = reader.take("scenes", how)
-    good = isinstance(entries, list) and all(isinstance(entry, str | dict) for entry in entries)
-    if not good or not entries:
-        raise reader.error(f"scenes is {entries!r}. {how.capitalize()}, at least one.")
     named = []
-    for number, entry in enumerate(entries, 1):
-        table = Reader(reader.file, {"scene": entry} if isinstance(entry, str) else entry)
-        table = table.renamed(f"scene {number}")
-        table.allow("scene", "seeds")
-        name = table.text("scene", what="the name or the file of a scene")
-        own = _seeds(table) if "seeds" in table.values else seeds
+    for number, entry in enumerate(file.scenes):
+        scene = SceneEntry(entry) if isinstance(entry, str) else entry
+        keys = ("scenes", number)
+        own = seeds if scene.seeds is None else _seeds(source, keys, scene.seeds)
         try:
-            named += [(twin, own) for twin in expand_twins(name)]
+            named += [(twin, own) for twin in expand_twins(scene.scene)]
         except SceneError as error:
-            raise reader.error(f"scenes: {error}") from error
+            raise source.error(("scenes",), str(error)) from error
     return named
 
 
 def _scenes(
-    reader: Reader, entries: Sequence[str], folder: Path
+    source: Source, entries: Sequence[str], folder: Path
 ) -> tuple[tuple[Scene, ...], tuple[str, ...]]:
-    sources = [_source(entry, folder) for entry in entries]
+    sources = [_scene_source(entry, folder) for entry in entries]
     scenes = []
-    for entry, source in zip(entries, sources, strict=True):
+    for entry, found in zip(entries, sources, strict=True):
         try:
-            scenes.append(load_scene(source))
+            scenes.append(load_scene(found))
         except SceneError as error:
-            raise reader.error(f"scenes: '{entry}': {error}") from error
-    _refuse_twins(reader, "scenes", [scene.name for scene in scenes])
+            raise source.error(("scenes",), f"'{entry}': {error}") from error
+    _refuse_twins(source, "scenes", [scene.name for scene in scenes])
     return tuple(scenes), tuple(sources)
 
 
-def _source(entry: str, folder: Path) -> str:
+def _scene_source(entry: str, folder: Path) -> str:
     if has_scene(entry):
         return entry
     if (folder / entry).exists():
@@ -280,119 +231,98 @@ def _source(entry: str, folder: Path) -> str:
 
 
 def _worlds(
-    reader: Reader, scenes: Sequence[Scene]
+    source: Source, file: MatrixFile, scenes: Sequence[Scene]
 ) -> tuple[tuple[tuple[str, Mapping[str, Any]], ...], ...]:
     """(name, settings) of the worlds of each scene."""
-    if "world" not in reader.values:
+    if not file.world:
         return ((),) * len(scenes)
-    tables = reader.tables("world")
-    _refuse_twins(reader, "worlds", [table.text("name", what=WORLD) for table in tables])
+    _refuse_twins(source, "worlds", [world.name for world in file.world])
     found: dict[str, list[tuple[str, Mapping[str, Any]]]] = {scene.name: [] for scene in scenes}
-    for table in tables:
-        name = table.text("name")
-        table = table.renamed(f"world '{name}'")
-        table.allow("name", "scenes", "settings")
-        for scene in _scenes_of(table, scenes):
-            found[scene.name].append((name, _world_settings(table, scene)))
+    for number, world in enumerate(file.world):
+        keys = ("world", number)
+        for scene in _scenes_of(world, scenes, source, keys):
+            try:
+                settings = plain(world_settings(scene, world.settings))
+            except SceneError as error:
+                raise source.error((*keys, "settings"), str(error)) from error
+            found[scene.name].append((world.name, settings))
     for name, worlds in found.items():
         if not worlds:
-            raise reader.error(f"scenes: '{name}' is in none of the worlds. Name it in one.")
+            raise source.error(("scenes",), f"'{name}' is in none of the worlds. Name it in one.")
     return tuple(tuple(worlds) for worlds in found.values())
 
 
-def _scenes_of(table: Reader, scenes: Sequence[Scene]) -> Sequence[Scene]:
-    if "scenes" not in table.values:
+def _scenes_of(
+    world: WorldEntry, scenes: Sequence[Scene], source: Source, keys: Sequence[str | int]
+) -> Sequence[Scene]:
+    if world.scenes is None:
         return scenes
-    names = table.texts("scenes")
     known = [scene.name for scene in scenes]
-    for name in names:
+    for name in world.scenes:
         if name not in known:
             hint = did_you_mean(name, known)
-            raise table.error(f"scenes: '{name}' is no scene of this matrix.{hint}")
-    return [scene for scene in scenes if scene.name in names]
+            what = f"'{name}' is no scene of this matrix.{hint}"
+            raise source.error((*keys, "scenes"), what)
+    return [scene for scene in scenes if scene.name in world.scenes]
 
 
-def _world_settings(table: Reader, scene: Scene) -> Mapping[str, Any]:
-    try:
-        return settings_as_data(world_settings(scene, table.table("settings").values))
-    except SceneError as error:
-        raise table.error(f"settings: {error}") from error
+def _seeds(
+    source: Source, keys: Sequence[str | int], seeds: int | Sequence[int]
+) -> tuple[int, ...]:
+    if isinstance(seeds, int):
+        return tuple(range(seeds))
+    _refuse_twins(source, "seeds", seeds, keys)
+    return tuple(seeds)
 
 
-def _seeds(reader: Reader) -> tuple[int, ...]:
-    value = reader.take("seeds", "give a number of seeds, or a list of them")
-    if isinstance(value, bool) or not isinstance(value, int | list):
-        raise reader.error(f"seeds is {value!r}. Give a number of seeds, or a list of them.")
-    if isinstance(value, int):
-        if value < 1:
-            raise reader.error(f"seeds is {value}. Give 1 or more.")
-        return tuple(range(value))
-    if not value:
-        raise reader.error("seeds is empty. Give at least one.")
-    for seed in value:
-        if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-            raise reader.error(f"seeds: {seed!r} is no seed. Give whole numbers of 0 or more.")
-    _refuse_twins(reader, "seeds", value)
-    return tuple(value)
-
-
-def _variants(reader: Reader, *, simulated: bool) -> tuple[Variant, ...]:
-    tables = reader.tables("planner")
-    variants = [_variant(table, simulated=simulated) for table in tables]
-    _refuse_twins(reader, "planners", [variant.name for variant in variants])
+def _variants(source: Source, file: MatrixFile) -> tuple[Variant, ...]:
+    variants = [
+        _variant(entry, source, ("planner", number)) for number, entry in enumerate(file.planner)
+    ]
+    _refuse_twins(source, "planners", [variant.name for variant in variants])
+    for number, variant in enumerate(variants):
+        if variant.cold and not file.world:
+            what = "cold is for simulated runs. Leave it out, or give the matrix a [[world]]."
+            raise source.error(("planner", number), what)
     return tuple(variants)
 
 
-def _variant(table: Reader, *, simulated: bool) -> Variant:
-    table.allow("name", "planner", "settings", "budget", *(["cold"] if simulated else []))
-    planner = table.text("planner", what=PLANNER)
-    table = table.renamed(f"planner '{table.values.get('name', planner)}'")
-    known = planner_names()
-    if planner not in known:
-        hint = did_you_mean(planner, known)
-        raise table.error(
-            f"there is no planner '{planner}'. Installed: {', '.join(known)}; "
-            f"or give its file with --plugin.{hint}"
-        )
-    # The others are not imported: they bring libraries of their own.
-    plugin = planner_info(planner)
-    settings = table.table("settings").values
-    if plugin.available:
+def _variant(entry: PlannerEntry, source: Source, keys: tuple[str | int, ...]) -> Variant:
+    try:
+        # The others are not imported: they bring libraries of their own.
+        plugin = planner_info(entry.planner)
+    except PluginError as error:
+        raise source.error(keys, str(error)) from error
+    settings: Mapping[str, Any] = entry.settings
+    if plugin.planner is not None:
         try:
-            planner_class = load_planner(planner)
-            settings = settings_as_dict(make_settings(planner_class, settings))
+            settings = plain(make_settings(plugin.planner, settings))
         except PluginError as error:
-            raise table.error(f"settings: {error}") from error
+            raise source.error((*keys, "settings"), str(error)) from error
     return Variant(
-        name=table.text("name", planner),
+        name=entry.name or entry.planner,
         plugin=plugin,
         settings=settings,
-        budget=_built(Budget, table.table("budget")),
-        cold=table.flag("cold"),
+        budget=_built(Budget, entry.budget, source, (*keys, "budget")),
+        cold=entry.cold,
     )
 
 
-def _built(kind: Any, table: Reader) -> Any:
-    """A dataclass of numbers from a table, or an error that names the place."""
-    wanted = {field.name: field.type for field in fields(kind)}
-    table.allow(*wanted)
-    for name, value in table.values.items():
-        whole = "int" in str(wanted[name])
-        good = isinstance(value, int) if whole else isinstance(value, int | float)
-        if isinstance(value, bool) or not good:
-            what = "a whole number" if whole else "a number"
-            raise table.error(f"{name} is {value!r}. Give {what}.")
+def _built(
+    kind: type[T], values: Mapping[str, Any], source: Source, keys: Sequence[str | int]
+) -> T:
+    """Budget or limits, from the table that some keys lead to."""
     try:
-        return kind(**table.values)
+        return dataclass_of(values, kind)
+    except MisfitError as error:
+        raise source.error(keys, str(error)) from error
     except ContractError as error:
-        raise table.error(str(error).removeprefix("budget: ")) from error
+        raise source.error(keys, str(error).removeprefix("budget: ")) from error
 
 
-def _refuse_twins(reader: Reader, what: str, names: Sequence[Any]) -> None:
-    for twin in _twins(names):
-        raise reader.error(f"two {what} are named '{twin}'. Give each a name of its own.")
-
-
-def _twins(names: Iterable[Any]) -> list[Any]:
-    names = list(names)
-    return [name for i, name in enumerate(names) if name in names[:i]]
+def _refuse_twins(
+    source: Source, what: str, names: Sequence[Any], keys: Sequence[str | int] = ()
+) -> None:
+    twins = [name for i, name in enumerate(names) if name in names[:i]]
+    if twins:
+        raise source.error(keys, f"two {what} are named '{twins[0]}'. Give each a name of its own.")

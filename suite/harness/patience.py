@@ -74,7 +74,7 @@ class Patience:
         self._seconds = seconds
         self._others = others or (OthersLoad() if seconds > 0.0 else lambda: 0.0)
         self._turn = threading.Lock()
-        self._running = 0
+        self._runs: set[object] = set()
         self._over = threading.Event()
 
     def give_up(self) -> None:
@@ -82,32 +82,33 @@ class Patience:
         self._over.set()
 
     @contextmanager
-    def own_core(self, *, wanted: bool) -> Iterator[None]:
+    def free_core(self, *, wanted: bool) -> Iterator[None]:
         """Within, a run goes on; before, a core is waited for if one is wanted.
 
-        One thread waits at a time: otherwise several would take the same core for theirs.
+        One thread waits at a time: otherwise several would take the same core for theirs. A run
+        that ends takes no turn: it is what the others wait for.
         """
+        run = object()
         with self._turn:
             if wanted:
                 self._wait()
-            self._running += 1
+            self._runs.add(run)
         try:
             yield
         finally:
-            self._running -= 1
+            self._runs.remove(run)
 
     def _wait(self) -> None:
         while self.waited_s < self._seconds and not self._over.is_set():
             asked = time.monotonic()
-            free = self._others() <= self._spare() + SLACK
-            if free:
+            if self._others() <= self._spare() + SLACK:
                 return
             self._over.wait(WINDOW_S)
             self.waited_s += time.monotonic() - asked
 
     def _spare(self) -> int:
         """Cores that others may have; who asks for more jobs than there are cores has none left."""
-        return max(0, honest_jobs() - self._running - 1)
+        return max(0, honest_jobs() - len(self._runs) - 1)
 
 
 def _allowed() -> tuple[int, ...]:

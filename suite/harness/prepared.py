@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from suite.planner import Planner
-from suite.plugins.discovery import load_planner, make_settings
+from suite.plugins.discovery import load_planner
+from suite.plugins.settings import make_settings
 from suite.referee.path import Referee
 from suite.scenes.catalogue import load_scene
 from suite.scenes.exact import shortest_path

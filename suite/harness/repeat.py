@@ -11,18 +11,9 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import replace
 
-from suite.harness.cluster.executors import crew
-from suite.harness.isolate import start_server
 from suite.harness.matrix import Matrix
 from suite.harness.patience import Patience
-from suite.harness.run import (
-    Progress,
-    begin_session,
-    contended_cells,
-    follow,
-    run_each,
-    warmth_for,
-)
+from suite.harness.run import Progress, contended_cells, run_each, session
 from suite.processes.cores import honest_jobs
 from suite.store.record import Cell, RunRecord
 from suite.store.write import Store
@@ -74,24 +65,20 @@ def repeat_contended(
         return progress
     progress.repeated = len(again)
     waited_s = progress.waited_s
-    at_a_time = jobs if executor is not None else min(jobs or honest_jobs(), honest_jobs())
-    warmth = warmth_for(again, matrix.limits)
-    if executor is None:
-        start_server(warmth)
+    attempts = store.attempts()
     patience = Patience(WAITING * patience_s, for_all=True)
-    with crew(executor, at_a_time, patience) as own:
-        begin_session(matrix, again, store, own)
-        attempts = store.attempts()
+    if executor is None:
+        jobs = min(jobs or honest_jobs(), honest_jobs())
 
-        def keep(record: RunRecord) -> None:
-            progress.repeats_done += 1
-            progress.waited_s = waited_s + patience.waited_s
-            _keep(record, store, attempts)
+    def keep(record: RunRecord) -> None:
+        progress.repeats_done += 1
+        progress.waited_s = waited_s + patience.waited_s
+        _keep(record, store, attempts)
 
+    with session(matrix, again, store, executor, jobs, patience) as own:
         for _ in range(ATTEMPTS):
             progress.repeats_wanted += len(again)
-            runs = run_each(_until(deadline, again), matrix.limits, warmth, own, progress)
-            follow(runs, keep, progress, on_progress)
+            run_each(_until(deadline, again), own, keep, progress, on_progress)
             again = contended_cells(cells, store)
             progress.contended = len(again)
             if not again or time.monotonic() >= deadline:

@@ -1,6 +1,6 @@
 """One row again, from its own record: whether its path is the same."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -28,11 +28,6 @@ class Comparison:
     distance: float | None
     words: str
 
-    @property
-    def as_dict(self) -> dict[str, Any]:
-        """The same as plain data."""
-        return asdict(self)
-
 
 def compare(store: Path, again: RunRecord) -> Comparison:
     """Compare a repeated run with its row.
@@ -48,7 +43,7 @@ def compare(store: Path, again: RunRecord) -> Comparison:
     runs = read_runs(store)
     row = runs[runs["key"] == key].to_dict("records")[0]
     before, now = read_paths(store).get(key), again.path
-    same = row["status"] == again.status and _equal(before, now)
+    same = row["status"] == again.status and same_path(before, now)
     timed = again.cell.time_counts
     distance = None
     if before is not None and now is not None and len(before) > 1 and len(now) > 1:
@@ -79,7 +74,8 @@ def _in_words(
     return f"not the same: {ends}{costs}{apart}; {why}."
 
 
-def _equal(one: NDArray[np.float64] | None, other: NDArray[np.float64] | None) -> bool:
+def same_path(one: NDArray[np.float64] | None, other: NDArray[np.float64] | None) -> bool:
+    """Whether two paths are the same bit for bit, or both are missing."""
     if one is None or other is None:
         return one is None and other is None
     return bool(np.array_equal(one, other))

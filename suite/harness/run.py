@@ -5,17 +5,17 @@ processes. Rows come back to the caller's thread, which is the store's one write
 """
 
 import os
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Self
 
 import numpy as np
 
 from suite.harness.cluster.executors import Crew, crew, record_of
 from suite.harness.fork_server import Warmth
-from suite.harness.isolate import start_server
 from suite.harness.matrix import Limits, Matrix
 from suite.harness.patience import Patience
 from suite.harness.provenance import provenance
@@ -91,6 +91,28 @@ class Progress:
     waited_s: float = 0.0
     planners: dict[str, Tally] = field(default_factory=dict)
 
+    @classmethod
+    def at_first(
+        cls, cells: Sequence[Cell], missing: Sequence[Cell], there: Mapping[str, str]
+    ) -> Self:
+        """How a matrix stands before its first run."""
+        found = len(cells) - len(missing)
+        progress = cls(wanted=len(cells), done=found, found=found)
+        again = {cell.key for cell in missing}
+        for cell in cells:
+            tally = progress.planners.setdefault(cell.variant, Tally())
+            tally.wanted += 1
+            if cell.key not in again:
+                tally.count(there[cell.key])
+        return progress
+
+    def count(self, record: RunRecord) -> None:
+        """Count a run that has ended."""
+        self.done += 1
+        self.failed += record.status in PlanStatus.FAILURES
+        self.last = record
+        self.planners[record.cell.variant].count(record.status)
+
     def summary(self) -> str:
         """One line that says how the matrix ended."""
         ran = self.done - self.found
@@ -160,41 +182,49 @@ def run_matrix(
     cells = matrix.cells(quick=quick)
     there = store.statuses()
     missing = to_run(cells, there, which)
-    progress = _progress(cells, missing, there)
+    progress = Progress.at_first(cells, missing, there)
     on_progress(progress)
     store.want(matrix.name, cells)
+
+    def keep(record: RunRecord) -> None:
+        store.add(record, replace=record.cell.key in there)
+        progress.count(record)
+
     if missing:
-        warmth = warmth_for(missing, matrix.limits)
-        if executor is None:
-            start_server(warmth)
-        with crew(executor, jobs, Patience(patience_s)) as own:
-            begin_session(matrix, missing, store, own)
-
-            def keep(record: RunRecord) -> None:
-                store.add(record, replace=record.cell.key in there)
-                _count(record, progress)
-
-            runs = run_each(missing, matrix.limits, warmth, own, progress)
-            follow(runs, keep, progress, on_progress)
-            progress.waited_s = own.patience.waited_s
+        patience = Patience(patience_s)
+        with session(matrix, missing, store, executor, jobs, patience) as own:
+            run_each(missing, own, keep, progress, on_progress)
+        progress.waited_s = patience.waited_s
     progress.contended = len(contended_cells(cells, store))
     return progress
 
 
-def begin_session(matrix: Matrix, cells: Sequence[Cell], store: Store, crew: Crew) -> None:
-    """Say in a store where the rows of these cells come from."""
-    distributions = {(cell.distribution, cell.version) for cell in cells}
-    place = {"pid": os.getpid(), **crew.provenance()}
-    store.begin_session(provenance(matrix.name, distributions) | place)
+@contextmanager
+def session(
+    matrix: Matrix,
+    cells: Sequence[Cell],
+    store: Store,
+    executor: Executor | None,
+    jobs: int | None,
+    patience: Patience,
+) -> Iterator[Crew]:
+    """Those who run these cells; the store is told where the rows come from that follow."""
+    limits = matrix.limits
+    with crew(executor, jobs, patience, limits, warmth_for(cells, limits)) as own:
+        distributions = {(cell.distribution, cell.version) for cell in cells}
+        place = {"pid": os.getpid(), **own.provenance()}
+        store.begin_session(provenance(matrix.name, distributions) | place)
+        yield own
 
 
-def follow(
-    runs: Generator[RunRecord | None, None, None],
+def run_each(
+    cells: Iterable[Cell],
+    crew: Crew,
     keep: Callable[[RunRecord], None],
     progress: Progress,
     on_progress: Callable[[Progress], None],
 ) -> None:
-    """Keep each record as it comes; of each, and of each start, somebody is told.
+    """Run cells, and keep each record as it comes; of each, and of each start, somebody is told.
 
     Raises
     ------
@@ -202,8 +232,8 @@ def follow(
         After Ctrl-C, when the runs in flight are killed; a note says if some could not be.
     """
     try:
-        with closing(runs):
-            for record in runs:
+        with closing(_records(cells, crew, progress)) as records:
+            for record in records:
                 if record is not None:
                     keep(record)
                 on_progress(progress)
@@ -211,6 +241,32 @@ def follow(
         if progress.left:
             interrupt.add_note(_left_in_words(progress.left))
         raise
+
+
+def _records(
+    cells: Iterable[Cell], crew: Crew, progress: Progress
+) -> Generator[RunRecord | None, None, None]:
+    """Yield each record when it is there, and None when runs were started.
+
+    Runs that are in flight when the caller closes the iterator, or is interrupted, are killed.
+    """
+    queue = iter(cells)
+    in_flight: dict[Future[RunRecord], Cell] = {}
+    try:
+        while True:
+            jobs = crew.size()
+            # One more than can run: it is ready when a run ends, while that one's row is written.
+            while len(in_flight) < jobs + 1 and (cell := next(queue, None)) is not None:
+                in_flight[crew.start(cell)] = cell
+            progress.running = [cell.label for cell in list(in_flight.values())[:jobs]]
+            yield None
+            if not in_flight:
+                return
+            done, _ = wait(in_flight, return_when=FIRST_COMPLETED)
+            for future in done:
+                yield record_of(future, in_flight.pop(future))
+    finally:
+        progress.left = crew.abandon(in_flight) if in_flight else 0
 
 
 def contended_cells(cells: Sequence[Cell], store: Store) -> list[Cell]:
@@ -234,19 +290,6 @@ def to_run(cells: Sequence[Cell], there: Mapping[str, str], which: Which) -> lis
         Which.ALL: set(there),
     }[which]
     return interleaved([cell for cell in cells if cell.key not in there or cell.key in again])
-
-
-def _progress(cells: Sequence[Cell], missing: Sequence[Cell], there: Mapping[str, str]) -> Progress:
-    """How a matrix stands before its first run."""
-    found = len(cells) - len(missing)
-    progress = Progress(wanted=len(cells), done=found, found=found)
-    again = {cell.key for cell in missing}
-    for cell in cells:
-        tally = progress.planners.setdefault(cell.variant, Tally())
-        tally.wanted += 1
-        if cell.key not in again:
-            tally.count(there[cell.key])
-    return progress
 
 
 def interleaved(cells: Sequence[Cell]) -> list[Cell]:
@@ -274,40 +317,3 @@ def _rows(count: int) -> str:
 def _left_in_words(left: int) -> str:
     runs = "1 run goes" if left == 1 else f"{left} runs go"
     return f"{runs} on elsewhere, to the end or the limit; nothing of that is kept."
-
-
-def _count(record: RunRecord, progress: Progress) -> None:
-    progress.done += 1
-    progress.failed += record.status in PlanStatus.FAILURES
-    progress.last = record
-    progress.planners[record.cell.variant].count(record.status)
-
-
-def run_each(
-    cells: Iterable[Cell],
-    limits: Limits,
-    warmth: Warmth,
-    crew: Crew,
-    progress: Progress,
-) -> Generator[RunRecord | None, None, None]:
-    """Yield each record when it is there, and None when runs were started.
-
-    Runs that are in flight when the caller closes the iterator, or is interrupted, are killed.
-    """
-    queue = iter(cells)
-    in_flight: dict[Future[RunRecord], Cell] = {}
-    try:
-        while True:
-            jobs = crew.size()
-            # One more than can run: it is ready when a run ends, while that one's row is written.
-            while len(in_flight) < jobs + 1 and (cell := next(queue, None)) is not None:
-                in_flight[crew.start(cell, limits, warmth)] = cell
-            progress.running = [cell.label for cell in list(in_flight.values())[:jobs]]
-            yield None
-            if not in_flight:
-                return
-            done, _ = wait(in_flight, return_when=FIRST_COMPLETED)
-            for future in done:
-                yield record_of(future, in_flight.pop(future))
-    finally:
-        progress.left = crew.abandon(in_flight) if in_flight else 0

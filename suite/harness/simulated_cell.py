@@ -1,7 +1,6 @@
 """One simulated run, in this process: a planner that plans again and again as its robot drives."""
 
 import json
-import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -10,15 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from suite.harness.contention import waited
 from suite.harness.prepared import prepared_scene
-from suite.planner import Plan, PlanAfresh, Planner, PlanStatus, Replanner
+from suite.planner import Plan, PlanAfresh, Planner, PlanStatus, Recorder, Replanner
+from suite.referee.clock import Clock
 from suite.scenes.exact import shortest_path
 from suite.scenes.scene import Query, Scene
-from suite.simulation.record import as_data, settings_from_data
+from suite.simulation.record import as_data
 from suite.simulation.run import Replan, Simulation, simulate
-from suite.simulation.settings import Charge
+from suite.simulation.settings import Charge, WorldSettings
 from suite.store.record import RunRecord, World, canonical_json
+from suite.typed import dataclass_of
 
 _FAILURES = (PlanStatus.ERROR, PlanStatus.INVALID)
 """Ends of a single plan that are the planner's fault, whatever the world did."""
@@ -47,11 +47,10 @@ def simulated(blank: RunRecord, planner: Planner, rng: np.random.Generator) -> R
         raise ValueError("the cell has no world.")
     scene = prepared_scene(cell.scene_source)
     replanner = PlanAfresh(planner, rng) if cell.world.cold else planner.replanner(rng)
-    settings = settings_from_data(cell.world.settings)
-    started, cpu = time.perf_counter(), time.process_time()
-    done = simulate(scene, scene.query(cell.query), replanner, settings, cell.budget)
+    settings = dataclass_of(cell.world.settings, WorldSettings)
     # The world is computed in the same process and never sleeps: who waited there waited anywhere.
-    contended = waited(time.perf_counter() - started, time.process_time() - cpu)
+    with Clock(Recorder()) as clock:
+        done = simulate(scene, scene.query(cell.query), replanner, settings, cell.budget)
     status, reason = _verdict(done)
     optimum = exact_length(cell.scene_source, cell.query, cell.world)
     cost = done.trajectory.length if status is PlanStatus.SOLVED else None
@@ -65,7 +64,7 @@ def simulated(blank: RunRecord, planner: Planner, rng: np.random.Generator) -> R
         generations=_total(r.generations for r in done.replans),
         checks=_total(r.checks for r in done.replans),
         computed_checks=_computed(done.replans),
-        contended=contended,
+        contended=clock.contended,
         wall_s=_total(r.latency_s for r in done.replans),
         details=_medians([r.details for r in done.replans]),
         path=done.trajectory.xy,
@@ -90,7 +89,7 @@ def exact_length(source: str, query: str, world: World) -> float | None:
 @lru_cache(maxsize=64)
 def _exact_length(source: str, query: str, settings: str) -> float | None:
     scene = prepared_scene(source)
-    world = replace(settings_from_data(json.loads(settings)), charge=Charge.ZERO)
+    world = replace(dataclass_of(json.loads(settings), WorldSettings), charge=Charge.ZERO)
     done = simulate(scene, scene.query(query), _Exact(), world)
     return done.trajectory.length if done.reached and not done.hits else None
 

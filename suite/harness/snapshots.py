@@ -14,6 +14,7 @@ import numpy as np
 
 from suite.harness.isolate import run_isolated
 from suite.harness.matrix import Matrix
+from suite.harness.rerun import same_path
 from suite.harness.run import warmth_for
 from suite.planner import Budget, PlanStatus, Snapshot
 from suite.store.read import read_paths, read_runs, read_snapshots
@@ -146,11 +147,8 @@ def _again(cell: Cell, row: Mapping[Any, Any], matrix: Matrix) -> RunRecord:
 
 
 def _same(record: RunRecord, row: Mapping[Any, Any], path: Any) -> bool:
-    if not record.snapshots or record.status != row["status"]:
-        return False
-    if path is None or record.path is None:
-        return path is record.path
-    return bool(np.array_equal(path, record.path))
+    alike = bool(record.snapshots) and record.status == row["status"]
+    return alike and same_path(path, record.path)
 
 
 def _thinned(snapshot: Snapshot) -> Snapshot:

@@ -20,6 +20,9 @@ WITHOUT_CROSSOVER_AND_MUTATION = "kbga-without-crossover-and-mutation"
 KBGA_PLUS = "kbga-plus"
 """Ours, which the paper says nothing of: it is shown beside, and never gets a verdict."""
 
+RUNS = 20
+"""Of the paper, where it speaks of none: as for its other figures."""
+
 UNITS = {"cost": "m", "generations": "", "time_s": "s", "reaction_s": "s", "success": ""}
 """Quantities that the paper reports, and their units here."""
 
@@ -82,6 +85,13 @@ def best_reported(scene: str | None) -> float | None:
     """
     costs = [r.value for r in find(scene=scene, planner=KBGA, quantity="cost", statistic="single")]
     return min(costs, default=None)
+
+
+def spread_of(figure: Reported) -> float | None:
+    """The standard deviation that the paper states at the same place, if it does."""
+    place = ("source", "scene", "planner", "quantity", "setting")
+    same = find(statistic="sd", **{name: getattr(figure, name) for name in place})
+    return same[0].value if same else None
 
 
 def _figures(statement: Mapping[str, Any]) -> Iterator[Reported]:

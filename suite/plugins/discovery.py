@@ -1,4 +1,4 @@
-"""Discovery of planners by entry point, and the settings that users write for them.
+"""Discovery of planners by entry point.
 
 A planner is declared in the metadata of any installed distribution::
 
@@ -11,15 +11,11 @@ says so; it stops nobody else. Planners that a user names on the spot
 """
 
 import dataclasses
-import types
-import typing
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
-from enum import Enum
+from collections.abc import Iterable, Sequence
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any
 
-from suite.errors import ContractError, PluginError, did_you_mean
+from suite.errors import PluginError, did_you_mean
 from suite.planner import Abilities, Planner
 from suite.plugins.code_hash import OURS, code_hash, files_of_entry_point, module_of
 from suite.plugins.from_file import NamedPlugin, named_plugins
@@ -28,9 +24,6 @@ from suite.plugins.validation import flaw
 GROUP = "kbga_bench.planners"
 
 Source = EntryPoint | NamedPlugin
-
-_TRUE = frozenset({"true", "yes", "on", "1"})
-_FALSE = frozenset({"false", "no", "off", "0"})
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -43,6 +36,7 @@ class PluginInfo:
     available : whether it can be loaded.
     reason : "unavailable: ..." and why; None if it is available.
     abilities : what it can do; None if it is not available.
+    planner : its class; None if it is not available.
     """
 
     name: str
@@ -51,6 +45,7 @@ class PluginInfo:
     available: bool
     reason: str | None = None
     abilities: Abilities | None = None
+    planner: type[Planner] | None = dataclasses.field(default=None, repr=False)
 
 
 def planner_names() -> list[str]:
@@ -117,69 +112,6 @@ def planner_version(name: str) -> str | None:
     """
     points = _declared().get(name)
     return None if points is None else ", ".join(_distribution(point)[1] for point in points)
-
-
-def make_settings(planner_class: type[Planner], mapping: Mapping[str, Any]) -> Any:
-    """Build a planner's frozen settings from what a user wrote.
-
-    Parameters
-    ----------
-    planner_class : type[Planner]
-    mapping : mapping from a field's name to its value
-        Values as TOML gives them, or strings as ``--set key=value`` gives them; strings are
-        converted to the type that the field declares.
-
-    Returns
-    -------
-    planner_class.Settings
-
-    Raises
-    ------
-    PluginError
-        If a field is unknown, a value has the wrong type, or the settings themselves refuse it.
-
-    Examples
-    --------
-    >>> from dataclasses import dataclass
-    >>> @dataclass(frozen=True)
-    ... class WalkSettings:
-    ...     step: float = 1.0
-    ...     retries: int | None = 3
-    >>> class Walk(Planner):
-    ...     name = "walk"
-    ...     Settings = WalkSettings
-    >>> make_settings(Walk, {"step": "0.5", "retries": "none"})
-    WalkSettings(step=0.5, retries=None)
-    """
-    owner = planner_class.name
-    wanted = _field_types(planner_class)
-    values: dict[str, Any] = {}
-    for key, value in mapping.items():
-        if key not in wanted:
-            fields = f"It has: {', '.join(wanted)}." if wanted else "It has no settings."
-            raise PluginError(f"{owner}: no setting '{key}'. {fields}{did_you_mean(key, wanted)}")
-        try:
-            values[key] = _converted(value, wanted[key])
-        except ValueError as error:
-            raise PluginError(
-                f"{owner}: {key} is {value!r}. It must be {_type_name(wanted[key])}."
-            ) from error
-    try:
-        return planner_class.Settings(**values)
-    except (TypeError, ValueError, ContractError) as error:
-        raise PluginError(f"{owner}: {error}") from error
-
-
-def settings_as_dict(settings: Any) -> dict[str, Any]:
-    """Fields and values of a settings dataclass, in the order of its fields, as plain data.
-
-    Examples
-    --------
-    >>> from suite.planner import NoSettings
-    >>> settings_as_dict(NoSettings())
-    {}
-    """
-    return {f.name: _plain(getattr(settings, f.name)) for f in dataclasses.fields(settings)}
 
 
 def _declared() -> dict[str, list[Source]]:
@@ -251,136 +183,4 @@ def _describe(name: str, sources: Sequence[Source]) -> PluginInfo:
         planner = _load(name, sources)
     except PluginError as error:
         return PluginInfo(name, distribution, version, False, f"unavailable: {error}")
-    return PluginInfo(name, distribution, version, True, None, planner.abilities)
-
-
-def _field_types(planner_class: type[Planner]) -> dict[str, Any]:
-    """Look up the declared type of each field that the settings take."""
-    settings = planner_class.Settings
-    if not dataclasses.is_dataclass(settings):
-        raise PluginError(f"{planner_class.name}: {settings.__name__} is not a dataclass.")
-    try:
-        hints = typing.get_type_hints(settings)
-    except NameError as error:
-        raise PluginError(
-            f"{planner_class.name}: the types of {settings.__name__} can't be read: {error}."
-        ) from error
-    return {f.name: hints[f.name] for f in dataclasses.fields(settings) if f.init}
-
-
-def _converted(value: Any, wanted: Any) -> Any:
-    """Convert a value to the declared type; ValueError if it does not fit."""
-    origin = typing.get_origin(wanted)
-    if origin in (types.UnionType, typing.Union):
-        return _converted_to_any(value, typing.get_args(wanted))
-    if origin is typing.Literal:
-        return _converted_to_literal(value, typing.get_args(wanted))
-    if origin is tuple or wanted is tuple:
-        return _converted_to_tuple(value, typing.get_args(wanted))
-    if wanted is type(None):
-        return _converted_to_none(value)
-    if wanted is bool:
-        return _converted_to_bool(value)
-    if wanted is int:
-        return _converted_to_int(value)
-    if wanted is float:
-        return _converted_to_float(value)
-    if isinstance(wanted, type):
-        if issubclass(wanted, Enum):
-            return wanted(value)
-        if not isinstance(value, wanted):
-            raise ValueError(wanted)
-    return value
-
-
-def _converted_to_any(value: Any, choices: Sequence[Any]) -> Any:
-    # None first and str last: the string "none" means None, and every string is a str.
-    for choice in sorted(choices, key=lambda c: (c is not type(None), c is str)):
-        try:
-            return _converted(value, choice)
-        except ValueError:
-            continue
-    raise ValueError(value)
-
-
-def _converted_to_literal(value: Any, choices: Sequence[Any]) -> Any:
-    for choice in choices:
-        if type(value) is type(choice) and value == choice:
-            return choice
-        if isinstance(value, str) and value == str(choice):
-            return choice
-    raise ValueError(value)
-
-
-def _converted_to_tuple(value: Any, inner: Sequence[Any]) -> tuple[Any, ...]:
-    items = [v.strip() for v in value.split(",")] if isinstance(value, str) else value
-    if not isinstance(items, list | tuple):
-        raise ValueError(value)
-    if not inner:
-        return tuple(items)
-    if len(inner) == 2 and inner[1] is Ellipsis:
-        inner = [inner[0]] * len(items)
-    if len(inner) != len(items):
-        raise ValueError(value)
-    return tuple(_converted(item, kind) for item, kind in zip(items, inner, strict=True))
-
-
-def _converted_to_none(value: Any) -> None:
-    if value is None or (isinstance(value, str) and value.lower() == "none"):
-        return
-    raise ValueError(value)
-
-
-def _converted_to_bool(value: Any) -> bool:
-    if isinstance(value, bool):
-        return value
-    if isinstance(value, str) and value.lower() in _TRUE | _FALSE:
-        return value.lower() in _TRUE
-    raise ValueError(value)
-
-
-def _converted_to_int(value: Any) -> int:
-    # bool is an int to Python, but `population = true` is a mistake.
-    if isinstance(value, bool) or not isinstance(value, int | str):
-        raise ValueError(value)
-    return int(value)
-
-
-def _converted_to_float(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise ValueError(value)
-    return float(value)
-
-
-def _type_name(wanted: Any) -> str:
-    """Put a declared type in a user's words: "a number", "a whole number or none"."""
-    words = {
-        int: "a whole number",
-        float: "a number",
-        bool: "true or false",
-        str: "a string",
-        type(None): "none",
-    }
-    if wanted in words:
-        return words[wanted]
-    origin, inner = typing.get_origin(wanted), typing.get_args(wanted)
-    if origin in (types.UnionType, typing.Union):
-        return " or ".join(_type_name(t) for t in inner)
-    if origin is typing.Literal:
-        return "one of " + ", ".join(repr(t) for t in inner)
-    if isinstance(wanted, type) and issubclass(wanted, Enum):
-        return "one of " + ", ".join(repr(m.value) for m in wanted)
-    if origin is tuple:
-        kinds = ", ".join("..." if t is Ellipsis else _type_name(t) for t in inner)
-        return f"a list ({kinds})"
-    return str(getattr(wanted, "__name__", wanted))
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Enum):
-        return value.value
-    if isinstance(value, tuple | list):
-        return [_plain(v) for v in value]
-    if isinstance(value, Mapping):
-        return {k: _plain(v) for k, v in value.items()}
-    return value
+    return PluginInfo(name, distribution, version, True, None, planner.abilities, planner)

@@ -6,10 +6,11 @@ the wrong descriptor would so hold up the harness for ever.
 
 import os
 import pickle
-import struct
 from collections import deque
 from multiprocessing.connection import Connection
 from typing import Any
+
+from suite.processes.multiprocessing_private import MESSAGE_HEADER
 
 STDERR_LINES = 20
 STDERR_BYTES = 16_384
@@ -18,9 +19,6 @@ BLOCK_BYTES = 65_536
 
 MESSAGE_BYTES = 1 << 28
 """More than any record has: a trace of a million generations is a tenth of it."""
-
-# What Connection.send puts before each message.
-_HEADER = struct.Struct("!i")
 
 
 class GarbledError(Exception):
@@ -54,18 +52,18 @@ class Inbox:
         self._bytes += block
         messages = []
         while (size := self._size()) is not None and len(self._bytes) >= size:
-            messages.append(_unpickled(bytes(self._bytes[_HEADER.size : size])))
+            messages.append(_unpickled(bytes(self._bytes[MESSAGE_HEADER.size : size])))
             del self._bytes[:size]
         return messages
 
     def _size(self) -> int | None:
         """Bytes of the message that comes next, header included; None if that is not known yet."""
-        if len(self._bytes) < _HEADER.size:
+        if len(self._bytes) < MESSAGE_HEADER.size:
             return None
-        (size,) = _HEADER.unpack_from(self._bytes)
+        (size,) = MESSAGE_HEADER.unpack_from(self._bytes)
         if not 0 < size <= MESSAGE_BYTES:
             raise GarbledError(f"a message of {size} bytes")
-        return _HEADER.size + int(size)
+        return MESSAGE_HEADER.size + int(size)
 
 
 class Tail:

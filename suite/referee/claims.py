@@ -5,16 +5,60 @@ the recorder's back. None of it may stop a matrix, or spoil the tables of the ot
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from numbers import Integral
 from typing import Any
 
 from suite.errors import ContractError
-from suite.planner import Improvement, Plan, Recorder
+from suite.planner import Improvement, Plan, PlanStatus, Recorder
 
 LARGEST_COUNT = 2**63 - 1
 """What a column of a store can hold."""
+
+
+def plain_plan(returned: Any) -> Plan:
+    """What ``plan`` returned, in plain numbers; its path is as it was, for the referee to judge.
+
+    Raises
+    ------
+    ContractError
+        If it is no Plan, claims what it may not, is solved without a path, or holds what is no
+        number where there should be one.
+    """
+    if not isinstance(returned, Plan):
+        raise ContractError(f"plan returned {type(returned).__name__}. It must return a Plan.")
+    if returned.status not in PlanStatus.CLAIMABLE:
+        allowed = ", ".join(PlanStatus.CLAIMABLE)
+        raise ContractError(
+            f"plan returned the status {returned.status!r}. It may claim {allowed}."
+        )
+    if returned.status == PlanStatus.SOLVED and returned.path is None:
+        raise ContractError("plan says 'solved' and returns no path.")
+    checks, computed_checks = as_checks(returned)
+    claim = returned.claimed_cost
+    return Plan(
+        PlanStatus(returned.status),
+        returned.path,
+        None if claim is None else float(as_measure(claim, "claimed_cost of the plan")),
+        as_count(returned.generations, "generations of the plan"),
+        as_count(returned.generation_of_best, "generation_of_best of the plan"),
+        checks,
+        _as_details(returned.details),
+        computed_checks,
+    )
+
+
+def _as_details(details: Any) -> dict[str, float]:
+    if not isinstance(details, Mapping):
+        raise ContractError(
+            f"details of the plan are a {type(details).__name__}. They must be a mapping from "
+            "names to numbers."
+        )
+    return {
+        str(name): float(as_measure(value, f"the detail {str(name)!r} of the plan"))
+        for name, value in details.items()
+    }
 
 
 def as_count(value: Any, name: str) -> int | None:
@@ -75,6 +119,8 @@ def as_measure(value: Any, name: str) -> float:
         If it is none.
     """
     try:
+        if isinstance(value, str | bytes):
+            raise TypeError  # float would read it
         return int(value) if isinstance(value, Integral) else float(value)
     except (TypeError, ValueError, OverflowError) as error:
         raise ContractError(f"{name} is {value!r}. It must be a number.") from error

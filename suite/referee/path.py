@@ -83,6 +83,21 @@ def judge(scene: Scene, query: Query, path: Any) -> Verdict:
     return Referee(scene).judge(query, path)
 
 
+def flaw_of_path(path: Any) -> str | None:
+    """What is wrong with the form of a path, whatever the scene; None if nothing is.
+
+    Examples
+    --------
+    >>> flaw_of_path([[0, 3, 1]])
+    'not a path: an array of shape (1, 3), not (n, 2).'
+    """
+    try:
+        _as_path(path)
+    except _Foul as foul:
+        return str(foul)
+    return None
+
+
 class Referee:
     """Judge of all paths of one scene; holds the scene's geometry prepared for it.
 

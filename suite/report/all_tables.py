@@ -1,6 +1,7 @@
 """All tables of a store's runs: pure functions of its rows."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -8,20 +9,28 @@ import pandas as pd
 from suite.report.paper.contrasts import contrast_table
 from suite.report.paper.tables import COST_NOTE, paper_tables
 from suite.report.paper.verdicts import Rows, verdict_table
-from suite.report.rows import newest
+from suite.report.rows import is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
-from suite.report.statistics.clock import dropped_note, fair, joined
+from suite.report.statistics.clock import dropped_note, fair
 from suite.report.table import Table
 from suite.report.tables.ablation import ablation_tables
 from suite.report.tables.alignment import alignment_tables, without_repeats
 from suite.report.tables.budgets import budget_tables
 from suite.report.tables.differences import difference_tables
 from suite.report.tables.ranking import ranking_tables
-from suite.report.tables.simulated import is_simulated, simulated_tables
+from suite.report.tables.simulated import simulated_tables
 from suite.report.tables.statistics import check_reference, statistics_tables
 from suite.report.tables.studies import study_tables
 from suite.report.tables.summary import summary_tables
 from suite.report.tables.targets import target_tables
+from suite.report.words import joined
+from suite.store.read import (
+    read_events,
+    read_first_measures,
+    read_replans,
+    read_runs,
+    read_simulations,
+)
 
 BOOTSTRAP_SEED = 2004
 """Any will do; the same rows give the same intervals."""
@@ -92,6 +101,40 @@ def all_tables(
             *paper_tables(kept),
         ],
         busy,
+    )
+
+
+def read_tables(
+    store: Path,
+    reference: str | None = None,
+    *,
+    runs: pd.DataFrame | None = None,
+    events: pd.DataFrame | None = None,
+) -> list[Table]:
+    """All tables of a store.
+
+    Parameters
+    ----------
+    store : Path
+    reference : str, optional
+        As for :func:`all_tables`.
+    runs, events : DataFrame, optional
+        Of this store, where they were read already.
+
+    Raises
+    ------
+    StoreError
+        If it can't be read.
+    KbgaBenchError
+        If no run is of the reference.
+    """
+    return all_tables(
+        read_runs(store) if runs is None else runs,
+        read_first_measures(store),
+        read_events(store) if events is None else events,
+        simulations=read_simulations(store),
+        replans=read_replans(store),
+        reference=reference,
     )
 
 

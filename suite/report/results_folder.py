@@ -12,52 +12,53 @@ import pandas as pd
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from suite.errors import KbgaBenchError, StoreError
-from suite.report.all_tables import all_tables
+from suite.errors import StoreError, writing
+from suite.report.all_tables import read_tables
 from suite.report.export.files import export_rows, made_folder, need_pyarrow
 from suite.report.figures.comparison import comparison_figures
 from suite.report.figures.convergence import convergence_figures
+from suite.report.figures.files import save
 from suite.report.figures.overview import overview_figures
 from suite.report.figures.ranks import rank_figures
 from suite.report.figures.replanning import plot_replanning
 from suite.report.figures.runtime import runtime_figures
-from suite.report.figures.scene import LINES, plot_scene_results, save
+from suite.report.figures.scene import plot_scene_results
 from suite.report.figures.simulation import plot_snapshots
 from suite.report.figures.studies import study_figures
+from suite.report.figures.style import LINES, heading
+from suite.report.formats import render
+from suite.report.kinds import FigureFormat, Part, TableFormat
 from suite.report.paper.pictures import paper_pictures
-from suite.report.rows import newest
+from suite.report.rows import cheapest, feasible, is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import fair
-from suite.report.table import SUFFIX, Format, Table, render
+from suite.report.table import Table
 from suite.report.tables.alignment import without_repeats
-from suite.report.tables.simulated import is_simulated
-from suite.report.tables.summary import feasible
-from suite.scenes.catalogue import load_scene
-from suite.scenes.scene import Query, Scene, scene_fingerprint
+from suite.scenes.catalogue import scene_as_it_was
+from suite.scenes.scene import Query, Scene
 from suite.simulation.record import from_data
 from suite.store.read import (
     read_events,
-    read_first_measures,
     read_paths,
     read_replans,
     read_runs,
     read_sessions,
     read_simulation,
-    read_simulations,
     read_snapshots,
 )
 
 MANIFEST = "manifest.json"
-
-COMPARISONS, PAPER_PICTURES = "comparisons", "paper-pictures"
-"""Names of the pictures that can be left out: how planners compare, and what the paper shows."""
 
 REPLANNING = "replanning"
 """Name of the figure of simulated runs."""
 
 
 def write_results(
-    store: Path, directory: Path, *, leave_out: Collection[str] = (), figures: str = "png"
+    store: Path,
+    directory: Path,
+    *,
+    leave_out: Collection[Part] = (),
+    figures: FigureFormat = FigureFormat.PNG,
 ) -> list[Path]:
     """Make a results folder from a store; the same store gives the same bytes.
 
@@ -70,12 +71,9 @@ def write_results(
     store : Path
     directory : Path
         Made if it is missing; files of the same names are replaced.
-    leave_out : collection of str
-        Rows that are not written, for they are too many (``events``, ``traces``, ``paths``), and
-        pictures (``comparisons``: of how the planners compare; ``paper-pictures``: like those of
-        the paper). The manifest names them.
-    figures : str
-        ``png``, or the vectors ``pdf`` and ``svg``.
+    leave_out : collection of Part
+        Rows that are not written, for they are too many, and pictures. The manifest names them.
+    figures : FigureFormat
 
     Returns
     -------
@@ -95,47 +93,22 @@ def write_results(
     scenes = _scenes(current)
     folder = made_folder(directory)
     tables = read_tables(store)
-    files = write_tables([t for t in tables if not t.detail], folder, Format.MARKDOWN)
-    files += write_tables(tables, folder, Format.CSV)
+    files = write_tables([t for t in tables if not t.detail], folder, TableFormat.MARKDOWN)
+    files += write_tables(tables, folder, TableFormat.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
     shown = fair(without_repeats(current))
     for name, figure in _figures(store, shown, scenes, leave_out):
-        file = folder / f"{name}.{figures}"
+        file = folder / f"{name}{figures.suffix}"
         save(figure, file)
         files.append(file)
     manifest = folder / MANIFEST
     made = _manifest(store, runs, folder, files, leave_out)
-    _write_text(manifest, json.dumps(made, indent=2) + "\n")
+    with writing(manifest):
+        manifest.write_text(json.dumps(made, indent=2) + "\n", encoding="utf-8")
     return [*files, manifest]
 
 
-def read_tables(store: Path, reference: str | None = None) -> list[Table]:
-    """All tables of a store.
-
-    Parameters
-    ----------
-    store : Path
-    reference : str, optional
-        The planner that the statistics compare the others with; default: kbga, or else the first.
-
-    Raises
-    ------
-    StoreError
-        If it can't be read.
-    KbgaBenchError
-        If no run is of the reference.
-    """
-    return all_tables(
-        read_runs(store),
-        read_first_measures(store),
-        read_events(store),
-        simulations=read_simulations(store),
-        replans=read_replans(store),
-        reference=reference,
-    )
-
-
-def write_tables(tables: Sequence[Table], directory: Path, style: Format) -> list[Path]:
+def write_tables(tables: Sequence[Table], directory: Path, style: TableFormat) -> list[Path]:
     """Write each table to a file of its name.
 
     Raises
@@ -146,41 +119,32 @@ def write_tables(tables: Sequence[Table], directory: Path, style: Format) -> lis
     folder = made_folder(directory)
     files = []
     for table in tables:
-        file = folder / f"{table.name}{SUFFIX[style]}"
-        _write_text(file, render(table, style))
+        file = folder / f"{table.name}{style.suffix}"
+        with writing(file):
+            file.write_text(render(table, style), encoding="utf-8")
         files.append(file)
     return files
 
 
 def _scenes(runs: pd.DataFrame) -> list[tuple[Scene, Query]]:
     """Scenes and queries of the runs, as they were when these were made."""
-    pairs = []
     wanted = runs[["scene_source", "query", "scene_hash"]].drop_duplicates()
-    for source, name, fingerprint in wanted.itertuples(index=False):
-        scene = load_scene(source)
-        query = scene.query(name)
-        if scene_fingerprint(scene, query) != fingerprint:
-            raise StoreError(
-                f"{source}: the scene has changed since its rows were made. Run them again into a "
-                "new store, or put the scene back."
-            )
-        pairs.append((scene, query))
-    return pairs
+    return [scene_as_it_was(*names) for names in wanted.itertuples(index=False)]
 
 
 def _figures(
     store: Path,
     current: pd.DataFrame,
     scenes: list[tuple[Scene, Query]],
-    leave_out: Collection[str],
+    leave_out: Collection[Part],
 ) -> Iterator[tuple[str, Figure]]:
     """The figures that are wanted, each with the name of its file."""
     planned, driven = current[~is_simulated(current)], current[is_simulated(current)]
     paths = read_paths(store)
     yield from study_figures(planned).items()
-    if COMPARISONS not in leave_out:
+    if Part.COMPARISONS not in leave_out:
         yield from _comparisons(steps_of(planned, read_events(store)))
-    if PAPER_PICTURES not in leave_out:
+    if Part.PAPER_PICTURES not in leave_out:
         yield from paper_pictures(planned, paths, read_snapshots(store), scenes).items()
     yield from _scene_figures(planned, paths, scenes)
     if not driven.empty:
@@ -213,11 +177,12 @@ def _scene_figures(
 
 def _snapshot_sheets(runs: pd.DataFrame, store: Path) -> Iterator[tuple[str, Figure]]:
     """A sheet of the first run of the first planner in each world."""
-    for (source, world), group in runs.groupby(["scene_source", "world"], sort=False):
-        data = read_simulation(store, group["key"].iloc[0])
-        figure = plot_snapshots(from_data(load_scene(str(source)), data))
-        figure.suptitle(f"{data['scene']}, {world}: {group['variant'].iloc[0]}", fontsize=11)
-        yield f"{data['scene']}-{_slug(str(world))}", figure
+    for row in runs.drop_duplicates(["scene_source", "world"]).to_dict("records"):
+        scene, _ = scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])
+        data = read_simulation(store, row["key"])
+        figure = plot_snapshots(from_data(scene, data))
+        heading(figure, f"{data['scene']}, {row['world']}: {row['variant']}")
+        yield f"{data['scene']}-{_slug(row['world'])}", figure
 
 
 def _slug(text: str) -> str:
@@ -232,15 +197,10 @@ def _best_paths(
     best: dict[str, NDArray[np.float64] | None] = {}
     labels = {}
     for variant, group in runs.groupby("variant", sort=False):
-        name, solved = str(variant), feasible(group)
-        share = f"{len(solved)} of {len(group)} runs"
-        if len(solved):
-            row = solved.sort_values("cost", kind="stable").iloc[0]
-            best[name] = paths[row["key"]]
-            labels[name] = f"{name}: {row['cost']:.2f} m ({share})"
-        else:
-            best[name] = None
-            labels[name] = f"{name}: no path ({share})"
+        name, row = str(variant), cheapest(group)
+        cost = "no path" if row is None else f"{row['cost']:.2f} m"
+        best[name] = None if row is None else paths[row["key"]]
+        labels[name] = f"{name}: {cost} ({len(feasible(group))} of {len(group)} runs)"
     return best, labels
 
 
@@ -249,7 +209,7 @@ def _manifest(
     runs: pd.DataFrame,
     folder: Path,
     files: Sequence[Path],
-    leave_out: Collection[str],
+    leave_out: Collection[Part],
 ) -> dict[str, Any]:
     sessions = read_sessions(store)
     matrices = list(dict.fromkeys(session["matrix"] for session in sessions))
@@ -268,10 +228,3 @@ def _manifest(
             for file in files
         },
     }
-
-
-def _write_text(file: Path, text: str) -> None:
-    try:
-        file.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise KbgaBenchError(f"{file}: can't be written ({error.strerror}).") from error

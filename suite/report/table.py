@@ -1,40 +1,26 @@
-"""A table with its title and its note, and the formats in which it is printed."""
+"""A table with its title and its note."""
 
-import math
-import textwrap
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from enum import StrEnum
-from numbers import Integral, Real
-from typing import Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum, auto
 
 import pandas as pd
-from tabulate import tabulate
 
 from suite.errors import KbgaBenchError
 
-HEADER_WIDTH = 7
-NOTE_WIDTH = 80
-ROUNDING = 1e-9
-"""Equal costs have a standard deviation of this order at most, which says nothing."""
 
-ROWS_OF_A_PAGE = 40
-"""In LaTeX: a table of more goes on on the next page."""
+class Kind(Enum):
+    """What the numbers of a column are: it says how a reader wants them printed."""
 
-AS_PRINTED = -1
-"""For the paper's own figures: whole, or two digits after the point."""
-
-
-class Format(StrEnum):
-    """How a table is written."""
-
-    TABLE = "table"
-    CSV = "csv"
-    MARKDOWN = "markdown"
-    LATEX = "latex"
-
-
-SUFFIX = {Format.TABLE: ".txt", Format.CSV: ".csv", Format.MARKDOWN: ".md", Format.LATEX: ".tex"}
+    MEASURE = auto()
+    COUNT = auto()
+    """Means and medians of whole numbers."""
+    TIME = auto()
+    P_VALUE = auto()
+    PRINTED = auto()
+    """The paper's own figures, as it prints them."""
+    MIXED = auto()
+    """Several quantities below each other."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,11 +29,12 @@ class Table:
 
     name : of its file.
     title : one line above it.
-    frame : DataFrame with one level of columns; the index carries nothing. Columns whose name
-        ends in ``(s)`` or ``(ms)`` hold seconds or milliseconds, in ``(%)`` per cent.
+    frame : DataFrame with one level of columns; the index carries nothing. A column's unit stands
+        in brackets at the end of its name: (m), (%), (s), (ms), (us).
     note : what a reader must know to read it rightly.
     infinite : what is printed for an infinite number; CSV holds ``inf``.
     detail : whether it holds the rows behind another table, too many to be printed among others.
+    kinds : of columns of numbers that are neither times, by their unit, nor plain measures.
     """
 
     name: str
@@ -56,6 +43,12 @@ class Table:
     note: str = ""
     infinite: str = "infinite"
     detail: bool = False
+    kinds: Mapping[str, Kind] = field(default_factory=dict)
+
+    def kind(self, column: str) -> Kind:
+        """What the numbers of a column are."""
+        is_time = column.endswith(("(s)", "(ms)", "(us)"))
+        return self.kinds.get(column, Kind.TIME if is_time else Kind.MEASURE)
 
 
 def named(tables: Sequence[Table], names: Sequence[str]) -> list[Table]:
@@ -74,172 +67,3 @@ def named(tables: Sequence[Table], names: Sequence[str]) -> list[Table]:
                 f"{', '.join(there)}."
             )
     return [there[name] for name in dict.fromkeys(names)] or list(tables)
-
-
-def render(table: Table, style: Format) -> str:
-    """Write a table as text, whole, with a newline at its end.
-
-    Parameters
-    ----------
-    table : Table
-    style : Format
-        CSV holds the numbers as they are, without title and note; the others round for reading.
-    """
-    return _RENDERERS[style](table)
-
-
-def _csv(table: Table) -> str:
-    return table.frame.to_csv(index=False, lineterminator="\n")
-
-
-def _plain(table: Table) -> str:
-    headers = [_broken(str(c)) for c in table.frame.columns]
-    height = max(map(len, headers), default=0)
-    padded = ([""] * (height - len(header)) + header for header in headers)
-    top = [list(line) for line in zip(*padded, strict=True)]
-    # As rows: tabulate would make room for two more characters in each heading.
-    cells = top + as_texts(table).to_numpy().tolist()
-    lines = tabulate(
-        cells, tablefmt="plain", disable_numparse=True, colalign=_alignment(table)
-    ).splitlines()
-    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-    lines.insert(height, "  ".join("-" * width for width in widths))
-    title, note = (textwrap.fill(text, NOTE_WIDTH) for text in (table.title, table.note))
-    return "\n".join([title, "", *lines, _below(note)])
-
-
-def _broken(header: str) -> list[str]:
-    """A heading in lines: numbers are narrower than their names."""
-    return textwrap.wrap(header, HEADER_WIDTH, break_long_words=False, break_on_hyphens=False)
-
-
-def _markdown(table: Table) -> str:
-    grid = tabulate(
-        as_texts(table).to_numpy().tolist(),
-        headers=[str(c) for c in table.frame.columns],
-        tablefmt="pipe",
-        disable_numparse=True,
-        colalign=_alignment(table) if len(table.frame) else None,
-    )
-    return f"### {table.title}\n\n{grid}\n{_below(table.note)}"
-
-
-def _alignment(table: Table) -> list[str]:
-    return ["right" if is_numeric(table.frame[c]) else "left" for c in table.frame.columns]
-
-
-def _latex(table: Table) -> str:
-    columns = "".join("r" if is_numeric(table.frame[c]) else "l" for c in table.frame.columns)
-    body = as_texts(table).style.hide(axis="index").format(escape="latex")
-    body = body.format_index(_stacked, escape="latex", axis=1)
-    goes_on = len(table.frame) > ROWS_OF_A_PAGE
-    caption = _escaped(f"{table.title}. {table.note}".strip())
-    written = body.to_latex(
-        column_format=columns,
-        hrules=True,
-        caption=caption,
-        label=f"tab:{table.name}",
-        position_float=None if goes_on else "centering",
-        environment="longtable" if goes_on else None,
-    )
-    written = _small(str(written), caption, table.title) if goes_on else _fitted(str(written))
-    # LaTeX's own fonts have another sign in its place.
-    return _PACKAGES + "\n" + written.replace("<", "$<$")
-
-
-_PACKAGES = r"% \usepackage{booktabs,graphicx,longtable}"
-
-
-def _stacked(header: object) -> str:
-    lines = r"\\".join(_broken(str(header)))
-    return rf"\shortstack{{{lines}}}"
-
-
-def _fitted(written: str) -> str:
-    """Scaled down to the width of the line, if wider."""
-    scale = r"\resizebox{\ifdim\width>\linewidth\linewidth\else\width\fi}{!}{%"
-    written = written.replace(r"\begin{tabular}", f"{scale}\n\\begin{{tabular}}")
-    return written.replace(r"\end{tabular}", "\\end{tabular}}")
-
-
-def _small(written: str, caption: str, title: str) -> str:
-    """In small letters and narrow columns, as several pages can't be scaled; one note is enough."""
-    again = rf"\caption[]{{{_escaped(title)}, continued}}"
-    written = written.replace(rf"\caption[]{{{caption}}}", again)
-    return f"{{\\scriptsize\\setlength{{\\tabcolsep}}{{3pt}}\n{written}}}\n"
-
-
-_RENDERERS: dict[Format, Callable[[Table], str]] = {
-    Format.TABLE: _plain,
-    Format.CSV: _csv,
-    Format.MARKDOWN: _markdown,
-    Format.LATEX: _latex,
-}
-
-
-def _below(note: str) -> str:
-    return f"\n{note}\n" if note else ""
-
-
-def _escaped(text: str) -> str:
-    return text.replace("%", r"\%").replace("_", r"\_").replace("&", r"\&").replace("#", r"\#")
-
-
-def is_numeric(column: "pd.Series[Any]") -> bool:
-    """Whether a column holds numbers, or nothing else that is there."""
-    if pd.api.types.is_numeric_dtype(column):
-        return True
-    # Counts and measures in one column are objects, so that counts stay whole.
-    values = [value for value in column if not _is_missing(value)]
-    return bool(values) and all(isinstance(value, Real) for value in values)
-
-
-def _is_missing(value: Any) -> bool:
-    return value is None or value is pd.NA or (isinstance(value, float) and math.isnan(value))
-
-
-def as_texts(table: Table) -> pd.DataFrame:
-    """The cells as they are printed for reading; missing ones are empty."""
-    columns = {}
-    for name in table.frame.columns:
-        digits = _digits(str(name))
-        columns[name] = [
-            table.infinite if _is_infinite(value) else _as_text(value, digits)
-            for value in table.frame[name]
-        ]
-    return pd.DataFrame(columns)
-
-
-def _is_infinite(value: Any) -> bool:
-    return isinstance(value, float) and math.isinf(value)
-
-
-def _digits(column: str) -> int | None:
-    """Digits after the point; None where figures of several quantities share a column."""
-    if column.startswith("paper"):
-        return AS_PRINTED
-    if column.startswith("ours") and "cost" not in column and "gen" not in column:
-        return None
-    if column in ("p", "Holm's p") or column.endswith(" p"):
-        return 4
-    return 3 if column.endswith("s)") else 1 if column.startswith(("gen", "checks")) else 2
-
-
-def _as_text(value: Any, digits: int | None) -> str:
-    if _is_missing(value):
-        return ""
-    if isinstance(value, bool | str) or not isinstance(value, Real):
-        return str(value)
-    if isinstance(value, Integral):
-        return str(value)
-    number = float(value)
-    number = number if abs(number) > ROUNDING else 0.0
-    if digits == AS_PRINTED:
-        return f"{number:.0f}" if number.is_integer() else f"{number:.2f}"
-    if digits is not None:
-        # Rounding may leave a zero with a sign.
-        return f"{round(number, digits) + 0.0:.{digits}f}"
-    if number.is_integer() and abs(number) >= 10:
-        return f"{number:.0f}"
-    # Three significant digits of what is small: times of ours, in the paper's seconds.
-    return f"{number:.2f}" if abs(number) >= 1 or number == 0 else f"{number:#.3g}"

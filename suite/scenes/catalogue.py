@@ -12,6 +12,7 @@ drew the walls. Scenes that were once drawn on whole metres stay as they were, a
 """
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 from suite.errors import SceneError, did_you_mean
@@ -19,7 +20,7 @@ from suite.scenes.geojson import read_scene
 from suite.scenes.modifiers import SUFFIXES, parse_modifiers, split_modifiers
 from suite.scenes.moving import moving, moving_name, parse_moving_name
 from suite.scenes.scattered import parse_scattered_name, scattered, scattered_name
-from suite.scenes.scene import Scene, make_scene
+from suite.scenes.scene import Query, Scene, make_scene, scene_fingerprint
 from suite.scenes.similarity import modified
 
 _FOLDER = Path(__file__).parent / "files"
@@ -195,6 +196,37 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
     if _is_generated(name):
         return _inflated(_generated(name), inflate)
     return read_scene(scene_file(name), inflate=inflate)
+
+
+def scene_as_it_was(
+    source: str, query: str, fingerprint: str, load: Callable[[str], Scene] = load_scene
+) -> tuple[Scene, Query]:
+    """The scene and the query of a row, unless they have changed since it was made.
+
+    Parameters
+    ----------
+    source : str
+        What :func:`load_scene` takes.
+    query : str
+        Its name.
+    fingerprint : str
+        As :func:`suite.scenes.scene.scene_fingerprint` gave it then.
+    load : callable
+        That loads the scene.
+
+    Raises
+    ------
+    SceneError
+        If the scene can't be loaded, or has changed.
+    """
+    scene = load(source)
+    asked = scene.query(query)
+    if scene_fingerprint(scene, asked) != fingerprint:
+        raise SceneError(
+            f"{source}: the scene has changed since its rows were made, or wanted. Run them again "
+            "into a new store, or put the scene back."
+        )
+    return scene, asked
 
 
 def _is_path(name_or_path: str | Path) -> bool:

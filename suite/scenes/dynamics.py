@@ -7,13 +7,16 @@ run, metres, x right, y up.
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from msgspec import Meta, Struct
+from msgspec.structs import fields
 from numpy.typing import ArrayLike, NDArray
 
 from suite.errors import SceneError
 from suite.geometry.tolerances import LARGEST
+from suite.typed import MisfitError, typed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,18 +103,21 @@ def constant_speed(velocity: tuple[float, float], start: float, stop: float) -> 
     return make_motion([(start, 0.0, 0.0), (stop, velocity[0] * span, velocity[1] * span)])
 
 
-@dataclass(frozen=True, slots=True)
-class Detection:
+_Length = Annotated[float, Meta(ge=0.0, le=LARGEST, description="a finite number, 0 or more")]
+_Coordinate = Annotated[float, Meta(ge=-LARGEST, le=LARGEST, description="a finite number")]
+_Pair = tuple[_Coordinate, _Coordinate]
+
+
+class Detection(Struct, frozen=True, forbid_unknown_fields=True):
     """The obstacle is unknown until the robot comes near; from then on it is known for good.
 
     range : metres from the robot to the obstacle's edge; None for the sensing range of the robot.
     """
 
-    range: float | None = None
+    range: _Length | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Removal:
+class Removal(Struct, frozen=True, forbid_unknown_fields=True):
     """The obstacle vanishes at a time, or when the robot comes near a place: whichever is first.
 
     time : seconds; None if time does not remove it.
@@ -119,9 +125,32 @@ class Removal:
     distance : metres from the place within which the robot must come.
     """
 
-    time: float | None = None
-    place: tuple[float, float] | None = None
-    distance: float = 0.0
+    time: _Length | None = None
+    place: Annotated[_Pair, Meta(description="[x, y], metres")] | None = None
+    distance: _Length = 0.0
+
+
+class _Motion(Struct, frozen=True, forbid_unknown_fields=True):
+    """Motion as a file has it."""
+
+    waypoints: Any = None
+    velocity: Annotated[_Pair, Meta(description="[vx, vy], metres per second")] | None = None
+    start: _Length = 0.0
+    stop: _Length | None = None
+
+
+class _Properties(Struct, frozen=True):
+    """Those of an obstacle's properties that make it dynamic."""
+
+    motion: (
+        Annotated[_Motion, Meta(description="an object of waypoints, or velocity, start, stop")]
+        | None
+    ) = None
+    detection: Annotated[Detection, Meta(description="an object of range")] | None = None
+    removal: Annotated[Removal, Meta(description="an object of time, place, distance")] | None = (
+        None
+    )
+    appears: _Length = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -153,6 +182,9 @@ class Dynamics:
         return self if self.motion is None else replace(self, motion=self.motion.faster(factor))
 
 
+_KEYS = tuple(field.name for field in fields(_Properties))
+
+
 def parse_dynamics(properties: Mapping[str, Any]) -> Dynamics | None:
     """Read the dynamics of an obstacle from its properties in a scene file.
 
@@ -171,14 +203,18 @@ def parse_dynamics(properties: Mapping[str, Any]) -> Dynamics | None:
     SceneError
         With what is wrong and how to mend it; the caller says where.
     """
-    if not any(key in properties for key in ("motion", "detection", "removal", "appears")):
+    given = {key: properties[key] for key in _KEYS if properties.get(key) is not None}
+    if not given:
         return None
-    return Dynamics(
-        _motion(_object(properties, "motion", {"waypoints", "velocity", "start", "stop"})),
-        _detection(_object(properties, "detection", {"range"})),
-        _removal(_object(properties, "removal", {"time", "place", "distance"})),
-        _number(properties, "appears", 0.0) if "appears" in properties else 0.0,
-    )
+    try:
+        read = typed(given, _Properties)
+    except MisfitError as error:
+        # The name of a value is in the error; that of a table with a wrong key is not.
+        place = "" if str(error).startswith(str(error.keys[-1])) else f"{error.keys[-1]}: "
+        raise SceneError(f"its {place}{error}") from error
+    if read.removal is not None:
+        _check_removal(read.removal, given["removal"])
+    return Dynamics(_motion(read.motion), read.detection, read.removal, read.appears)
 
 
 def as_properties(dynamics: Dynamics | None) -> dict[str, Any]:
@@ -213,73 +249,29 @@ def as_text(dynamics: Dynamics) -> str:
     return json.dumps(as_properties(dynamics), sort_keys=True)
 
 
-def _object(properties: Mapping[str, Any], key: str, fields: set[str]) -> dict[str, Any] | None:
-    if key not in properties:
+def _motion(read: _Motion | None) -> Motion | None:
+    if read is None:
         return None
-    value = properties[key]
-    if not isinstance(value, dict):
-        raise SceneError(f"its {key} is {value!r}. Give an object of {_listed(fields)}.")
-    unknown = sorted(value.keys() - fields)
-    if unknown:
-        raise SceneError(f"its {key} has the unknown {unknown[0]!r}. It takes {_listed(fields)}.")
-    return value
-
-
-def _listed(fields: set[str]) -> str:
-    return ", ".join(sorted(fields))
-
-
-def _number(data: Mapping[str, Any], key: str, least: float) -> float:
-    value = data.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST:
-        raise SceneError(f"its {key} is {value!r}. Give a finite number.")
-    if value < least:
-        raise SceneError(f"its {key} is {value}. Give {least:g} or more.")
-    return float(value)
-
-
-def _pair(data: dict[str, Any], key: str, what: str) -> tuple[float, float]:
-    value = data.get(key)
-    if not isinstance(value, list) or len(value) != 2:
-        raise SceneError(f"its {key} is {value!r}. Give {what}.")
-    first, second = (_number({key: v}, key, -LARGEST) for v in value)
-    return first, second
-
-
-def _motion(data: dict[str, Any] | None) -> Motion | None:
-    if data is None:
-        return None
-    if ("waypoints" in data) == ("velocity" in data):
+    if (read.waypoints is None) == (read.velocity is None):
         raise SceneError("its motion has to have either waypoints or a velocity.")
-    if "waypoints" in data:
-        if len(data) > 1:
+    if read.velocity is None:
+        if (read.start, read.stop) != (0.0, None):
             raise SceneError("its motion has waypoints and more. Start and stop go with velocity.")
-        return make_motion(data["waypoints"])
-    start = _number(data, "start", 0.0) if "start" in data else 0.0
-    stop = _number(data, "stop", 0.0)
-    if stop <= start:
-        raise SceneError(f"its motion stops at {stop} s, not after its start. Give a later stop.")
-    return constant_speed(_pair(data, "velocity", "[vx, vy], metres per second"), start, stop)
+        return make_motion(read.waypoints)
+    if read.stop is None:
+        raise SceneError("its motion has a velocity and no stop. Give the time when it rests.")
+    if read.stop <= read.start:
+        raise SceneError(
+            f"its motion stops at {read.stop} s, not after its start. Give a later stop."
+        )
+    return constant_speed(read.velocity, read.start, read.stop)
 
 
-def _detection(data: dict[str, Any] | None) -> Detection | None:
-    if data is None:
-        return None
-    return Detection(_number(data, "range", 0.0) if "range" in data else None)
-
-
-def _removal(data: dict[str, Any] | None) -> Removal | None:
-    if data is None:
-        return None
-    if "time" not in data and "place" not in data:
+def _check_removal(removal: Removal, given: Mapping[str, Any]) -> None:
+    if removal.time is None and removal.place is None:
         raise SceneError("its removal names neither a time nor a place. Give one of them.")
-    if ("place" in data) != ("distance" in data):
+    if (removal.place is None) != (given.get("distance") is None):
         raise SceneError("its removal has to have place and distance together.")
-    return Removal(
-        _number(data, "time", 0.0) if "time" in data else None,
-        _pair(data, "place", "[x, y], metres") if "place" in data else None,
-        _number(data, "distance", 0.0) if "distance" in data else 0.0,
-    )
 
 
 def _frozen(array: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -47,7 +47,7 @@ from typing import Any
 
 from shapely.geometry import Polygon, mapping
 
-from suite.errors import SceneError
+from suite.errors import SceneError, check_file, writing
 from suite.geometry.tolerances import LARGEST
 from suite.scenes.dynamics import as_properties, parse_dynamics
 from suite.scenes.modifiers import SUFFIXES
@@ -240,10 +240,7 @@ def check_scene_file(path: Path) -> None:
     SceneError
         If its suffix is not that of a scene file, or its folder is missing.
     """
-    if path.suffix.lower() not in SUFFIXES:
-        raise SceneError(f"{path}: scene files are {', '.join(SUFFIXES)}. Name such a file.")
-    if not path.parent.is_dir():
-        raise SceneError(f"{path}: there is no folder {path.parent}. Make it first.")
+    check_file(path, "scene files", SUFFIXES, SceneError)
 
 
 def write_scene(scene: Scene, path: Path) -> None:
@@ -268,10 +265,8 @@ def write_scene(scene: Scene, path: Path) -> None:
     lines = ",\n".join(json.dumps(f) for f in features)
     head = json.dumps({"name": scene.name, "properties": dict(scene.properties)}, indent=1)
     text = f'{head[:-2]},\n "type": "FeatureCollection",\n "features": [\n{lines}\n]}}\n'
-    try:
+    with writing(path, SceneError):
         path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise SceneError(f"{path}: can't be written ({error.strerror}).") from error
 
 
 def _as_feature(properties: Mapping[str, Any], geometry: Mapping[str, Any]) -> dict[str, Any]:

@@ -120,6 +120,29 @@ def route_optima(
     return found
 
 
+def routes_of(scene: Scene, paths: Sequence[NDArray[np.float64]]) -> list[Word]:
+    """The routes of some paths: two with the same ends are on one if their words are the same.
+
+    Parameters
+    ----------
+    scene : Scene
+    paths : sequence of (n, 2) float64, metres
+
+    Returns
+    -------
+    list of tuple of int
+        A word for each path; comparable among these paths only.
+    """
+    rays = _ray_sources(scene, np.concatenate(paths))
+    words: list[Word] = []
+    for path in paths:
+        word: Word = ()
+        for a, b in pairwise(path):
+            word = reduced(word, _letters(a, b, rays))
+        words.append(word)
+    return words
+
+
 State = tuple[int, Word]
 """A node and the reduced word of the way to it: paths in one state are deformable into another."""
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from msgspec import structs
 from numpy.typing import NDArray
 from shapely.geometry import LineString, Point, Polygon
 
@@ -169,7 +170,7 @@ def _moved_removal(removal: Removal | None, move: Similarity) -> Removal | None:
     if removal is None or removal.place is None:
         return removal
     x, y = move.points(np.array(removal.place)).tolist()
-    return replace(removal, place=(x, y))
+    return structs.replace(removal, place=(x, y))
 
 
 def _moved_properties(scene: Scene, modifiers: Modifiers, move: Similarity) -> dict[str, Any]:

@@ -23,10 +23,9 @@ planner), so there is no time step to choose.
 """
 
 import gc
-import time
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
@@ -36,7 +35,8 @@ from numpy.typing import NDArray
 from suite.errors import ContractError
 from suite.geometry.kernels import first_collision
 from suite.planner import Budget, Plan, PlanStatus, Recorder, Replanner
-from suite.referee.claims import as_checks, as_count
+from suite.referee.claims import plain_plan
+from suite.referee.clock import Clock
 from suite.referee.path import judge
 from suite.scenes.exact import path_length, shortest_path
 from suite.scenes.scene import Query, Scene
@@ -291,23 +291,21 @@ class _Run:
         robot = self.robot
         query = Query(self._query.name, robot.place, self._query.goal)
         recorder = Recorder()
-        reason = None
+        returned: Any = None
+        reason: str | None = None
         # The garbage on the heap is the simulation's: collecting it is not the planner's time.
         gc.disable()
-        recorder.start_clock()
-        started = recorder.started  # whatever the planner does to the recorder
+        clock = Clock(recorder)
         try:
-            plan = self._ask(known, query, self._budget, recorder)
+            with clock:
+                returned = self._ask(known, query, self._budget, recorder)
         except (Exception, SystemExit):
             # Other people's code: whatever it raises is an update without a path.
-            plan = Plan(PlanStatus.ERROR)
             reason = traceback.format_exc(limit=-1).strip()
-        # The one clock stops here: nothing may come between these lines.
-        latency_s = time.perf_counter() - started
         gc.enable()
         self._ask = self._replanner.update
-        self._note(_judged(known, query, plan, reason, robot.time, changed, latency_s))
-        charge = latency_s if self._settings.charge is Charge.MEASURED else 0.0
+        self._note(_judged(known, query, returned, reason, robot.time, changed, clock.wall_s))
+        charge = clock.wall_s if self._settings.charge is Charge.MEASURED else 0.0
         return _Pending(robot.time + charge, self.replans[-1].path, [robot.place])
 
     def _note(self, replan: Replan) -> None:
@@ -317,14 +315,14 @@ class _Run:
 def _judged(
     known: Scene,
     query: Query,
-    plan: Any,
+    returned: Any,
     reason: str | None,
     time: float,
     changed: bool,
     latency_s: float,
 ) -> Replan:
     """What a plan is worth: a path only if the static referee finds it free in what is known."""
-    plan, reason = _formed(plan, reason)
+    plan, reason = _formed(returned, reason)
     status = plan.status
     path = None
     if status == PlanStatus.SOLVED:
@@ -347,21 +345,16 @@ def _judged(
         generations=plan.generations,
         checks=plan.checks,
         computed_checks=plan.computed_checks,
-        details={str(name): float(value) for name, value in plan.details.items()},
+        details=plan.details,
     )
 
 
-def _formed(plan: Any, reason: str | None) -> tuple[Plan, str | None]:
-    """A plan whose counts are plain numbers, and what is wrong if it was none."""
-    if not isinstance(plan, Plan):
-        return Plan(PlanStatus.ERROR), f"returned {type(plan).__name__}, not a Plan."
+def _formed(returned: Any, reason: str | None) -> tuple[Plan, str | None]:
+    """A plan in plain numbers, and the reason if there was none: what was raised, or its form."""
     try:
-        generations = as_count(plan.generations, "generations of the plan")
-        checks, computed = as_checks(plan)
+        return (Plan(PlanStatus.ERROR) if reason else plain_plan(returned)), reason
     except ContractError as error:
         return Plan(PlanStatus.ERROR), str(error)
-    plan = replace(plan, generations=generations, checks=checks, computed_checks=computed)
-    return plan, reason
 
 
 def _joining(place: NDArray[np.float64], pending: _Pending) -> list[NDArray[np.float64]]:

@@ -1,13 +1,14 @@
 """How fast the robot is, how often and how far it looks, and what its planning costs it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
 from typing import Any
 
 from suite.errors import SceneError
 from suite.scenes.scene import Scene
+from suite.typed import MisfitError, dataclass_of, typed
 
 
 class Charge(StrEnum):
@@ -44,11 +45,10 @@ class WorldSettings:
         _check_number("sensing_range", self.sensing_range, least_is_allowed=True)
 
 
-def _check_number(name: str, value: Any, *, least_is_allowed: bool) -> None:
-    is_number = isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
-    if not is_number or value < 0.0 or (value == 0.0 and not least_is_allowed):
+def _check_number(name: str, value: float, *, least_is_allowed: bool) -> None:
+    if not isfinite(value) or value < 0.0 or (value == 0.0 and not least_is_allowed):
         rule = "0 or more" if least_is_allowed else "above 0"
-        raise SceneError(f"world: {name} is {value!r}. It must be a finite number, {rule}.")
+        raise SceneError(f"{name} is {value!r}. It must be a finite number, {rule}.")
 
 
 def world_settings(scene: Scene, overrides: Mapping[str, Any] | None = None) -> WorldSettings:
@@ -67,28 +67,11 @@ def world_settings(scene: Scene, overrides: Mapping[str, Any] | None = None) -> 
     """
     own = scene.properties.get("world", {})
     wanted = {key: value for key, value in (overrides or {}).items() if value is not None}
-    _check_names(f"{scene.name}: its property 'world'", own)
-    _check_names("world: it", wanted)
     try:
-        settings = _with(WorldSettings(), own)
-    except SceneError as error:
-        raise SceneError(f"{scene.name}: {error}") from error
-    return _with(settings, wanted)
-
-
-def _check_names(what: str, values: Any) -> None:
-    """Refuse anything but a mapping from fields of WorldSettings."""
-    names = [field.name for field in fields(WorldSettings)]
-    if isinstance(values, Mapping) and not values.keys() - set(names):
-        return
-    held = sorted(values.keys() - set(names))[0] if isinstance(values, Mapping) else values
-    raise SceneError(f"{what} holds {held!r}. It takes {', '.join(names)}.")
-
-
-def _with(settings: WorldSettings, values: Mapping[str, Any]) -> WorldSettings:
-    changed = replace(settings, **values)
+        dataclass_of(typed(own, dict[str, Any]), WorldSettings)
+    except (MisfitError, SceneError) as error:
+        raise SceneError(f"{scene.name}, its property 'world': {error}") from error
     try:
-        return replace(changed, charge=Charge(changed.charge))
-    except ValueError as error:
-        known = " or ".join(repr(charge.value) for charge in Charge)
-        raise SceneError(f"world: charge is {changed.charge!r}. It must be {known}.") from error
+        return dataclass_of(own | wanted, WorldSettings)
+    except (MisfitError, SceneError) as error:
+        raise SceneError(f"world: {error}") from error

@@ -18,6 +18,9 @@ from suite.simulation.hits import vanishes
 from suite.simulation.run import Replan, Simulation
 from suite.simulation.settings import Charge
 
+TURN_M = 1.0
+"""A path ahead that becomes longer or shorter by more is news, metres."""
+
 
 class Sight(StrEnum):
     """What the robot knows of an obstacle, and whether that moves."""
@@ -66,6 +69,19 @@ def update_times(run: Simulation) -> list[float]:
     count = int(np.ceil(end / interval))
     times = [number * interval for number in range(count)]
     return [time for time in times if time < end] or [0.0]
+
+
+def is_turn(before: float | None, now: float | None, driven: float) -> bool:
+    """Whether the path ahead is another one than what was left of the one before; by costs, metres.
+
+    Examples
+    --------
+    >>> is_turn(20.0, 15.0, 5.0), is_turn(20.0, 20.0, 5.0), is_turn(None, 20.0, 5.0)
+    (False, True, True)
+    """
+    if before is None or now is None:
+        return before is not now
+    return abs(now - (before - driven)) > TURN_M
 
 
 def view_at(run: Simulation, time: float) -> View:

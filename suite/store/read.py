@@ -4,6 +4,7 @@ import json
 import zlib
 from collections.abc import Mapping
 from contextlib import closing
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -25,9 +26,7 @@ _KINDS = {
 }
 """Declared types of columns as pandas has them; all others are as SQLite gives them."""
 
-_SAME_NAME = (
-    "scene", "scene_source", "scene_hash", "query", "variant", "planner", "distribution", "version",
-)  # fmt: skip
+_TEXTS = tuple(field.name for field in fields(Cell) if field.type is str)
 """Fields of a cell that are columns of a row as they are."""
 
 
@@ -222,7 +221,7 @@ def stored_cell(row: Mapping[Any, Any]) -> Cell:
     counts = {name: _whole(row[f"budget_{name}"]) for name in ("generations", "checks")}
     wall_s, cpu_s = (_seconds(row.get(f"budget_{name}")) for name in ("wall_s", "cpu_s"))
     return Cell(
-        **{name: row[name] for name in _SAME_NAME},
+        **{name: row[name] for name in _TEXTS},
         settings=json.loads(row["settings"]),
         budget=Budget(wall_s, cpu_s=cpu_s, **counts),
         seed=int(row["seed"]),

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from suite.planner import Budget, Improvement, PlanStatus, Snapshot
 from suite.scenes.scene import DEFAULT_QUERY
+from suite.typed import plain
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,11 +26,6 @@ class World:
     name: str
     settings: Mapping[str, Any]
     cold: bool = False
-
-    @property
-    def as_dict(self) -> dict[str, Any]:
-        """The same as plain data."""
-        return {"name": self.name, "settings": dict(self.settings), "cold": self.cold}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,7 +117,7 @@ class Cell:
             self.seed,
         ]
         if self.world is not None:
-            content.append(self.world.as_dict)
+            content.append(plain(self.world))
         return short_hash(content)
 
 

@@ -10,7 +10,7 @@ import sqlite3
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import fields
+from dataclasses import astuple
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -23,14 +23,7 @@ from suite.planner import Snapshot
 from suite.store.connection import check_is_store, connect, explained, missing
 from suite.store.read import read_sessions
 from suite.store.record import Cell, RunRecord, canonical_json, short_hash
-from suite.store.schema import BELONGINGS, add_columns, create_tables
-
-_CELL_COLUMNS = tuple(f.name for f in fields(Cell) if f.name not in ("settings", "budget", "world"))
-_OUTCOME_COLUMNS = tuple(
-    f.name
-    for f in fields(RunRecord)
-    if f.name not in ("cell", "improvements", "trace", "path", "details", "simulation", "snapshots")
-)
+from suite.store.schema import BELONGINGS, add_columns, columns_now, create_tables
 
 
 class Store:
@@ -120,8 +113,7 @@ class Store:
         """
         if self._session is None:
             raise StoreError(f"{self.path}: begin a session before adding rows.")
-        row = _as_row(record)
-        row["session"] = self._session
+        row = _as_row(record) | {"session": self._session}
         key = row["key"]
         with self._writing() as connection:
             if replace:
@@ -130,10 +122,7 @@ class Store:
             connection.execute(_insert("runs", row), row)
             connection.executemany(
                 "INSERT INTO events VALUES (?, ?, ?, ?, ?, ?, ?)",
-                [
-                    (key, i, e.wall_s, e.cpu_s, e.cost, e.generation, e.checks)
-                    for i, e in enumerate(record.improvements)
-                ],
+                [(key, i, *astuple(report)) for i, report in enumerate(record.improvements)],
             )
             if record.trace:
                 connection.execute(
@@ -279,22 +268,29 @@ def _make_folder(path: Path) -> None:
 
 
 def _as_row(record: RunRecord) -> dict[str, Any]:
-    cell = record.cell
-    row: dict[str, Any] = {name: getattr(cell, name) for name in _CELL_COLUMNS}
-    row |= {name: getattr(record, name) for name in _OUTCOME_COLUMNS}
-    row |= {f"budget_{name}": value for name, value in cell.budget_as_dict.items()}
-    row["key"] = cell.key
-    row["status"] = str(record.status)
-    # What an exception says may hold half a character, as names of files do.
-    row["reason"] = record.reason and record.reason.encode("utf-8", "replace").decode()
-    row["settings"] = canonical_json(cell.settings)
-    row["settings_hash"] = short_hash(cell.settings)
-    world = cell.world
-    row["world"] = None if world is None else world.name
-    row["world_settings"] = None if world is None else canonical_json(world.settings)
-    row["cold"] = world is not None and world.cold
-    row["details"] = canonical_json(record.details)
-    return row
+    """The columns of a run: what cell and record call by the same name, and what is put otherwise.
+
+    What a record has beside it stands in tables of its own.
+    """
+    cell, world = record.cell, record.cell.world
+    named: dict[str, Any] = {
+        name: getattr(owner, name)
+        for owner in (cell, record)
+        for name in columns_now("runs")
+        if hasattr(owner, name)
+    }
+    return named | {
+        "status": str(record.status),
+        # What an exception says may hold half a character, as names of files do.
+        "reason": record.reason and record.reason.encode("utf-8", "replace").decode(),
+        "settings": canonical_json(cell.settings),
+        "settings_hash": short_hash(cell.settings),
+        "world": None if world is None else world.name,
+        "world_settings": None if world is None else canonical_json(world.settings),
+        "cold": world is not None and world.cold,
+        "details": canonical_json(record.details),
+        **{f"budget_{name}": value for name, value in cell.budget_as_dict.items()},
+    }
 
 
 def _insert(table: str, row: Mapping[str, Any]) -> str:

@@ -13,10 +13,11 @@ import shapely
 from kbga.plugin import KBGAPlanner, KBGAPlusPlanner
 from kbga.settings import KBGASettings
 from suite.planner import Budget, Plan, PlanStatus, Recorder
-from suite.plugins.discovery import make_settings, settings_as_dict
+from suite.plugins.settings import make_settings
 from suite.referee.path import judge
 from suite.scenes.scene import Scene
 from suite.store.record import canonical_json
+from suite.typed import plain
 from tests.kbga.laboratory import scene_of
 from tests.suite.geometry.lattice import COMPILED, counts
 
@@ -189,6 +190,6 @@ def test_it_keeps_the_budgets_that_it_says_it_keeps():
 def test_an_infinite_repair_limit_survives_the_way_through_a_matrix_and_the_store():
     made = make_settings(KBGAPlanner, {"repair_limit": "inf"})  # as --set gives it
     assert made == make_settings(KBGAPlanner, {"repair_limit": math.inf})  # as TOML gives it
-    stored = json.loads(canonical_json(settings_as_dict(made)))
+    stored = json.loads(canonical_json(plain(made)))
     assert make_settings(KBGAPlanner, stored) == made
     assert stored["repair_limit"] == math.inf

@@ -20,7 +20,8 @@ import psutil
 import shapely
 
 from suite.harness.cell import run_cell
-from suite.harness.isolate import run_isolated, start_server
+from suite.harness.fleet import start_server
+from suite.harness.isolate import run_isolated
 from suite.harness.matrix import Limits
 from suite.harness.provenance import provenance
 from suite.harness.run import warmth_for

@@ -8,7 +8,9 @@ from typing import Any
 
 import pandas as pd
 
-from suite.report.table import Format, Table, render
+from suite.report.formats import render
+from suite.report.kinds import TableFormat
+from suite.report.table import Table
 from tests.perf.performance_table import Row
 
 OVERHEAD_MS = 30.0
@@ -101,10 +103,10 @@ def write(measured: Mapping[str, Any], folder: Path) -> str:
     folder.mkdir(parents=True, exist_ok=True)
     tables = [goals_table(measured), parts_table(measured)]
     texts = {
-        "harness.md": "\n".join(render(table, Format.MARKDOWN) for table in tables),
-        "harness.csv": render(tables[0], Format.CSV),
+        "harness.md": "\n".join(render(table, TableFormat.MARKDOWN) for table in tables),
+        "harness.csv": render(tables[0], TableFormat.CSV),
         "manifest.json": json.dumps(measured["provenance"], indent=2) + "\n",
     }
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
-    return "\n".join(render(table, Format.TABLE) for table in tables)
+    return "\n".join(render(table, TableFormat.TABLE) for table in tables)

@@ -13,7 +13,9 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from suite.report.table import Format, Table, render
+from suite.report.formats import render
+from suite.report.kinds import TableFormat
+from suite.report.table import Table
 from tests.perf.performance_figure import draw
 from tests.perf.series import OMPL_PLANNERS, OURS, RIVALS, SCENES
 
@@ -342,8 +344,8 @@ def write(measured: Measured, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     tables = [goals_table(measured), times_table(measured)]
     texts = {
-        "performance.md": "\n".join(render(table, Format.MARKDOWN) for table in tables),
-        **{f"{table.name}.csv": render(table, Format.CSV) for table in tables},
+        "performance.md": "\n".join(render(table, TableFormat.MARKDOWN) for table in tables),
+        **{f"{table.name}.csv": render(table, TableFormat.CSV) for table in tables},
         "manifest.json": json.dumps(measured.provenance, indent=2) + "\n",
     }
     for name, text in texts.items():
@@ -374,7 +376,7 @@ def main(record: str, folder: str) -> None:
     for path in write(measured, Path(folder)):
         sys.stdout.write(f"{path}\n")
     for table in (times_table(measured), goals_table(measured)):
-        sys.stdout.write("\n" + render(table, Format.TABLE))
+        sys.stdout.write("\n" + render(table, TableFormat.TABLE))
 
 
 if __name__ == "__main__":

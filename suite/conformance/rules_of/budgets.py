@@ -6,11 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from suite.conformance.finding import Finding, NotApplicable
+from suite.conformance.finding import Finding, NotApplicable, Outcome
 from suite.conformance.subject import Subject, Trial
 from suite.planner import Budget, PlanStatus
-
-Outcome = Finding | NotApplicable | None
 
 HARD = ("one wall", "enclosed goal", "500 obstacles")
 """Scenes in which a search goes on as long as it may: nothing, or always more, is to be found."""

@@ -5,14 +5,13 @@ import pickle
 from collections.abc import Set
 from typing import Any
 
-from suite.conformance.finding import Finding, NotApplicable
+from suite.conformance.finding import Finding, Outcome
 from suite.conformance.subject import Subject
 from suite.errors import PluginError
 from suite.planner import Budget
-from suite.plugins.discovery import make_settings, settings_as_dict
+from suite.plugins.settings import make_settings
 from suite.plugins.validation import NAME, flaw
-
-Outcome = Finding | NotApplicable | None
+from suite.typed import plain
 
 
 def is_a_planner(subject: Subject) -> Outcome:
@@ -71,14 +70,14 @@ def settings_are_frozen(subject: Subject) -> Outcome:
 def settings_come_back(subject: Subject) -> Outcome:
     """Its settings survive the way through a matrix and a row: plain data that make them again."""
     given = subject.settings or subject.planner_class.Settings()
-    settings, told = subject.planner_class(given).settings, settings_as_dict(given)
+    settings, told = subject.planner_class(given).settings, plain(given)
     if told and settings is not given:
         return _lost(told, "the planner's own are others, whatever it is built with")
     try:
         made = make_settings(subject.planner_class, told)
     except PluginError as error:
         return _lost(told, str(error))
-    return None if made == settings else _lost(told, f"they come back as {settings_as_dict(made)}")
+    return None if made == settings else _lost(told, f"they come back as {plain(made)}")
 
 
 def _lost(told: Any, what: str) -> Finding:

@@ -12,13 +12,11 @@ import subprocess
 import sys
 from typing import Any
 
-from suite.conformance.finding import Finding, NotApplicable
+from suite.conformance.finding import Finding, NotApplicable, Outcome
 from suite.conformance.rules_of.repeatability import difference, keeps_no_state
 from suite.conformance.subject import Subject
 from suite.plugins.from_file import named_plugins
 from suite.processes.output import print_aside
-
-Outcome = Finding | NotApplicable | None
 
 SCENES = ("one wall", "500 obstacles")
 """Few, as a process is started for them; in the second one, a set of obstacles is a large one."""

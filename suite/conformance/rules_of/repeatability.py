@@ -4,10 +4,8 @@ from functools import lru_cache
 from itertools import combinations
 from typing import Any
 
-from suite.conformance.finding import Finding, NotApplicable
+from suite.conformance.finding import Finding, NotApplicable, Outcome
 from suite.conformance.subject import SEED, Subject, Trial
-
-Outcome = Finding | NotApplicable | None
 
 VARIED = ("one wall", "narrow gap", "500 obstacles")
 SEEDS = (1, 2, 3, 4)

@@ -3,11 +3,11 @@
 Whoever plans afresh at each update is held to the rules about runs, and that is enough.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import wraps
 
 from suite.conformance.drive import drive, ordinary_drive
-from suite.conformance.finding import Finding, NotApplicable
+from suite.conformance.finding import Finding, NotApplicable, Outcome
 from suite.conformance.rules_of.budgets import (
     ATTEMPTS,
     CHECKS,
@@ -19,12 +19,9 @@ from suite.conformance.rules_of.budgets import (
 )
 from suite.conformance.rules_of.repeatability import TIMED, difference
 from suite.conformance.rules_of.runs import MORE
-from suite.conformance.subject import Subject, Trial, form_of, times
+from suite.conformance.subject import Rule, Subject, Trial, form_of, times
 from suite.conformance.surroundings import Surroundings
 from suite.planner import Budget, Planner, PlanStatus
-
-Outcome = Finding | NotApplicable | None
-Rule = Callable[[Subject], Outcome]
 
 AFRESH = NotApplicable("it has no replanner of its own.")
 UNPLANNED = NotApplicable("not all updates end with a plan.")

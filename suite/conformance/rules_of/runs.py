@@ -5,14 +5,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from suite.conformance.finding import Finding, NotApplicable
+from suite.conformance.finding import Finding, NotApplicable, Outcome
 from suite.conformance.subject import Subject, Trial, form_of, optimum, times
 from suite.errors import ContractError
 from suite.geometry.tolerances import COST_CLAIM_RELATIVE
 from suite.planner import Improvement, PlanStatus
 from suite.referee.claims import improvements, trace
-
-Outcome = Finding | NotApplicable | None
 
 MORE = (10, 100)
 """Times an ordinary budget, for planners whose generations or checks do little."""

@@ -2,11 +2,9 @@
 
 from collections.abc import Callable
 
-from suite.conformance.finding import Finding, NotApplicable
+from suite.conformance.finding import Finding, Outcome
 from suite.conformance.subject import Subject, Trial
 from suite.conformance.surroundings import Surroundings
-
-Outcome = Finding | NotApplicable | None
 
 
 def leaves_the_scene_alone(subject: Subject) -> Outcome:

@@ -21,8 +21,9 @@ from typing import Any, ParamSpec, TypeVar
 
 from suite.errors import HarnessError
 from suite.harness.cluster.worker import DISTRIBUTION, Session, describe, end_session, run_for
+from suite.harness.fleet import kill_running, start_server
 from suite.harness.fork_server import Warmth
-from suite.harness.isolate import kill_running, run_isolated
+from suite.harness.isolate import run_isolated
 from suite.harness.matrix import Limits
 from suite.harness.patience import Patience
 from suite.harness.provenance import package_version
@@ -180,18 +181,22 @@ def connect(address: str) -> DaskExecutor:
 
 @dataclass(frozen=True, slots=True)
 class Crew:
-    """Who runs the cells.
+    """Who runs the cells, and within what limits.
 
     executor : where each is waited for.
     jobs : how many at a time; None to ask the cluster again and again, for it may grow.
     session : of runs whose workers are not this process; None for threads of this process.
     patience : with this machine, if it is busy. Workers elsewhere have none.
+    limits : of each run.
+    warmth : what fork servers have ready for them.
     """
 
     executor: Executor
     jobs: int | None
     session: Session | None
     patience: Patience
+    limits: Limits
+    warmth: Warmth
 
     def size(self) -> int:
         """Runs at a time."""
@@ -199,11 +204,12 @@ class Crew:
             return self.executor.slots()
         return self.jobs or honest_jobs()
 
-    def start(self, cell: Cell, limits: Limits, warmth: Warmth) -> Future[RunRecord]:
+    def start(self, cell: Cell) -> Future[RunRecord]:
         """Have a cell run."""
+        what = (cell, self.limits, self.warmth)
         if self.session is None:
-            return self.executor.submit(_run_patiently, self.patience, cell, limits, warmth)
-        return self.executor.submit(run_for, self.session, cell, limits, warmth)
+            return self.executor.submit(_run_patiently, self.patience, *what)
+        return self.executor.submit(run_for, self.session, *what)
 
     def provenance(self) -> dict[str, Any]:
         """Where runs go that do not stay on this machine."""
@@ -237,7 +243,7 @@ class Crew:
 
 @contextmanager
 def crew(
-    given: Executor | None, jobs: int | None, patience: Patience | None = None
+    given: Executor | None, jobs: int | None, patience: Patience, limits: Limits, warmth: Warmth
 ) -> Iterator[Crew]:
     """Those who run a matrix: a given executor, or threads of this process while they are needed.
 
@@ -246,20 +252,21 @@ def crew(
     given : Executor, optional
     jobs : int, optional
         Runs at a time; default: what leaves their timing honest.
-    patience : Patience, optional
-        With this machine; default: none.
+    patience : Patience
+        With this machine.
+    limits, warmth : of each run. The fork server of this process begins to warm itself.
     """
-    patience = patience or Patience(0.0)
     if given is not None:
-        yield Crew(given, jobs, new_session(), patience)
+        yield Crew(given, jobs, new_session(), patience, limits, warmth)
         return
+    start_server(warmth)
     jobs = jobs or honest_jobs()
     with ThreadPoolExecutor(jobs, thread_name_prefix="run") as own:
-        yield Crew(own, jobs, None, patience)
+        yield Crew(own, jobs, None, patience, limits, warmth)
 
 
 def _run_patiently(patience: Patience, cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
-    with patience.own_core(wanted=patience.for_all or cell.load_counts):
+    with patience.free_core(wanted=patience.for_all or cell.load_counts):
         return run_isolated(cell, limits, warmth)
 
 

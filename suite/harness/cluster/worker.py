@@ -14,8 +14,9 @@ from datetime import UTC, datetime
 from typing import Any
 
 from suite.errors import HarnessError
+from suite.harness.fleet import kill_running, stop_server
 from suite.harness.fork_server import Warmth
-from suite.harness.isolate import kill_running, run_isolated, stop_server
+from suite.harness.isolate import run_isolated
 from suite.harness.matrix import Limits
 from suite.harness.provenance import host_name, package_version, provenance
 from suite.planner import PlanStatus

@@ -7,7 +7,7 @@ from typing import Final
 
 import pandas as pd
 
-from suite.errors import StoreError
+from suite.errors import StoreError, writing
 from suite.store.read import (
     read_events,
     read_paths,
@@ -68,13 +68,11 @@ def export_rows(
         if frame.empty and name in OF_SIMULATIONS:
             continue
         file = folder / f"{name}.{kind}"
-        try:
+        with writing(file, StoreError):
             if kind == "parquet":
                 frame.to_parquet(file, index=False, compression=COMPRESSION)
             else:
                 frame.to_csv(file, index=False, lineterminator="\n")
-        except OSError as error:
-            raise StoreError(f"{file}: can't be written ({error.strerror}).") from error
         files.append(file)
     return files
 

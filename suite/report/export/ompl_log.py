@@ -17,11 +17,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from suite.errors import StoreError
+from suite.errors import StoreError, writing
 from suite.planner import PlanStatus
 from suite.report.export.files import made_folder
-from suite.report.rows import newest
-from suite.report.tables.simulated import is_simulated
+from suite.report.rows import is_simulated, newest
 from suite.store.read import read_events, read_runs, read_sessions
 
 STATUSES = tuple(status.value for status in PlanStatus)
@@ -87,10 +86,8 @@ def write_ompl_logs(store: Path, directory: Path) -> list[Path]:
     for (scene, query), group in runs.groupby(["scene", "query"], sort=False):
         file = folder / f"{_word(scene)}-{_word(query)}.log"
         lines = _log(f"{_word(scene)}-{_word(query)}", group, events, sessions)
-        try:
+        with writing(file, StoreError):
             file.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        except OSError as error:
-            raise StoreError(f"{file}: can't be written ({error.strerror}).") from error
         files.append(file)
     return files
 

@@ -8,22 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator
 
-from suite.report.figures.panels import (
-    LEAST_GAP,
-    PLANNERS_AT_MOST,
-    SMALL,
-    Panels,
-    gap_text,
-    legend,
-    logarithmic_gaps,
-    logarithmic_time,
-    look,
-    numbered,
-    scene_panels,
-    title,
-)
-from suite.report.statistics.anytime import Array, Steps, final_gaps, groups_of, on_clock
-from suite.report.statistics.clock import WALL, joined, untimed_note
+from suite.report.figures import style
+from suite.report.figures.panels import PLANNERS_AT_MOST, Panels, scene_panels, title
+from suite.report.statistics.anytime import Steps, final_gaps, groups_of, on_clock
+from suite.report.statistics.clock import WALL, untimed_note
+from suite.report.statistics.inference import Array
+from suite.report.words import joined
 
 EXACT = "visibility-graph"
 """The exact solver's plugin. Its time is the limit: who needs longer, needs a reason."""
@@ -34,7 +24,12 @@ MANY = 200
 ABOVE = 6.0
 """How far the axis goes on above the largest gap, for runs without path; as far again for words."""
 
-SHARE_TEXT: dict[str, Any] = {"ha": "center", "va": "top", "rotation": 90, "fontsize": SMALL - 1}
+SHARE_TEXT: dict[str, Any] = {
+    "ha": "center",
+    "va": "top",
+    "rotation": 90,
+    "fontsize": style.SMALLEST,
+}
 
 BOXES_NOTE = (
     "Box: quartiles and median of the runs that found a path; whiskers: the farthest runs within "
@@ -84,7 +79,7 @@ def plot_boxes(steps: Steps) -> Figure:
     gap = 100.0 * final_gaps(steps)
     groups = groups_of(steps, ~np.isnan(steps.optimum))
     scenes = list(dict.fromkeys(scene for scene, _ in groups))
-    planners = numbered(steps.runs["variant"])
+    planners = style.numbered(steps.runs["variant"])
     panels = scene_panels(scenes)
     for (scene, planner), rows in groups.items():
         if scene in panels.axes:
@@ -92,17 +87,17 @@ def plot_boxes(steps: Steps) -> Figure:
     first = next(iter(panels.axes.values()))
     first.set_xlim(-0.7, len(planners) - 0.3)
     first.set_xticks([])
-    logarithmic_gaps(first, gap)
+    style.logarithmic_gaps(first, gap)
     first.set_ylim(top=ABOVE**2 * first.get_ylim()[1])
     title(panels, "How near the optimum the runs end", "", len(scenes))
-    legend(panels.figure, planners, BOXES_NOTE, only_markers=True)
+    style.legend(panels.figure, planners, BOXES_NOTE, only_markers=True)
     return panels.figure
 
 
 def _draw_box(axes: Axes, i: int, gap: Array) -> None:
     """Draw the box of one planner's gaps, per cent, and its marker on the median."""
-    lines = look(i)
-    found = np.maximum(gap[np.isfinite(gap)], LEAST_GAP)
+    lines = style.look(i)
+    found = np.maximum(gap[np.isfinite(gap)], style.LEAST_GAP)
     if len(found) < len(gap):
         # Where the axis goes on above the largest gap, whatever that is.
         above = axes.get_xaxis_transform()
@@ -138,7 +133,7 @@ def plot_scatter(steps: Steps) -> Figure:
     steps : Steps
         With an accepted path in a scene with an optimum, of a run that had a core for itself.
     """
-    planners, left_out = numbered(steps.runs["variant"]), untimed_note(steps.runs)
+    planners, left_out = style.numbered(steps.runs["variant"]), untimed_note(steps.runs)
     steps = on_clock(steps, WALL)
     runs = steps.runs
     gap = 100.0 * final_gaps(steps)
@@ -147,22 +142,24 @@ def plot_scatter(steps: Steps) -> Figure:
     scenes = list(dict.fromkeys(scene for scene, _ in groups))
     panels = scene_panels(scenes)
     first = next(iter(panels.axes.values()))
-    logarithmic_gaps(first, gap)
+    style.logarithmic_gaps(first, gap)
     edge = first.get_ylim()[1]
     first.set_ylim(top=ABOVE * edge)
     measured = time[np.isfinite(time) & (time > 0.0)]
-    logarithmic_time(first, 0.7 * float(measured.min()), 1.5 * float(measured.max()))
+    style.logarithmic_time(first, 0.7 * float(measured.min()), 1.5 * float(measured.max()))
     no_path = _mark_no_path(first, edge)
     for axes in panels.axes.values():
         axes.axhline(edge, color="#808080", linewidth=0.8)
     for (scene, planner), rows in groups.items():
         if scene in panels.axes:
-            height = np.where(np.isfinite(gap[rows]), np.maximum(gap[rows], LEAST_GAP), no_path)
+            height = np.where(
+                np.isfinite(gap[rows]), np.maximum(gap[rows], style.LEAST_GAP), no_path
+            )
             _draw_runs(panels.axes[scene], planners[planner], time[rows], height)
     limit = _draw_limits(panels, runs, time)
     title(panels, "Time and gap of the runs", "wall time to the final path (ms)", len(scenes))
     note = joined(SCATTER_NOTE + limit, left_out)
-    legend(panels.figure, planners, note, only_markers=True)
+    style.legend(panels.figure, planners, note, only_markers=True)
     return panels.figure
 
 
@@ -171,12 +168,12 @@ def _mark_no_path(axes: Axes, edge: float) -> float:
     place = edge * ABOVE**0.5
     ticks = [tick for tick in axes.get_yticks() if tick <= edge]
     axes.yaxis.set_major_locator(FixedLocator([*ticks, place]))
-    axes.yaxis.set_major_formatter(lambda gap, _: "no path" if gap > edge else gap_text(gap))
+    axes.yaxis.set_major_formatter(lambda gap, _: "no path" if gap > edge else style.gap_text(gap))
     return place
 
 
 def _draw_runs(axes: Axes, i: int, time: Array, height: Array) -> None:
-    lines = look(i)
+    lines = style.look(i)
     axes.plot(
         time,
         height,

@@ -7,20 +7,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from suite.report.figures.panels import (
-    LEAST_GAP,
-    PANELS_AT_MOST,
-    PLANNERS_AT_MOST,
-    legend,
-    logarithmic_gaps,
-    logarithmic_time,
-    look,
-    numbered,
-    scene_panels,
-    title,
-)
-from suite.report.statistics.anytime import Array, Steps, gap_at, groups_of, only
-from suite.report.statistics.clock import WALL, by_the_clock, joined, untimed_note
+from suite.report.figures import style
+from suite.report.figures.panels import PANELS_AT_MOST, PLANNERS_AT_MOST, scene_panels, title
+from suite.report.statistics.anytime import Steps, gap_at, groups_of, only
+from suite.report.statistics.clock import WALL, by_the_clock, untimed_note
+from suite.report.statistics.inference import Array
+from suite.report.words import joined
 
 POINTS = 160
 """Places on the horizontal axis."""
@@ -76,7 +68,7 @@ def plot_convergence(steps: Steps, clock: str) -> Figure:
         Of :data:`CLOCKS`.
     """
     name, label, unit, shift = CLOCKS[clock]
-    planners = numbered(steps.runs["variant"])
+    planners = style.numbered(steps.runs["variant"])
     scenes = list(dict.fromkeys(scene for scene, _ in counted_groups(steps, clock)))
     drawn = only(steps, steps.runs["place"].isin(scenes[:PANELS_AT_MOST]).to_numpy())
     groups = counted_groups(drawn, clock)
@@ -86,14 +78,14 @@ def plot_convergence(steps: Steps, clock: str) -> Figure:
     for (scene, planner), band in bands.items():
         _draw_band(panels.axes[scene], grid * unit, 100.0 * band, planners[planner])
     first = next(iter(panels.axes.values()))
-    logarithmic_time(first, grid[0] * unit, grid[-1] * unit)
-    logarithmic_gaps(first, 100.0 * np.array(list(bands.values())))
+    style.logarithmic_time(first, grid[0] * unit, grid[-1] * unit)
+    style.logarithmic_gaps(first, 100.0 * np.array(list(bands.values())))
     title(panels, f"How the gap falls over {name}", label, len(scenes))
     counting = {planner for _, planner in groups}
     named = {planner: i for planner, i in planners.items() if planner in counting}
     left_out = untimed_note(steps.runs) if clock == WALL else ""
     silent = _silent(planners.keys() - counting, name)
-    legend(panels.figure, named, joined(HOW_TO_READ + silent, left_out))
+    style.legend(panels.figure, named, joined(HOW_TO_READ + silent, left_out))
     return panels.figure
 
 
@@ -156,8 +148,8 @@ def quartiles(values: Array) -> Array:
 
 
 def _draw_band(axes: Axes, x: Array, band: Array, i: int) -> None:
-    low, middle, high = np.maximum(band, LEAST_GAP)
-    lines = look(i)
+    low, middle, high = np.maximum(band, style.LEAST_GAP)
+    lines = style.look(i)
     began = np.isfinite(low)
     axes.fill_between(
         x[began],

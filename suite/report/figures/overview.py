@@ -7,13 +7,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.colors import Colormap, LogNorm
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from suite.report.figures.panels import LEAST_GAP, SMALL, legend, plain_number
-from suite.report.statistics.anytime import Array, Steps
-from suite.report.statistics.clock import joined, untimed_note
+from suite.report.figures import style
+from suite.report.statistics.anytime import Steps
+from suite.report.statistics.clock import untimed_note
 from suite.report.tables.ranking import rankings, scene_scores
+from suite.report.words import joined
 
 PLANNERS_AT_MOST = 40
 SCENES_AT_MOST = 16
@@ -27,12 +28,6 @@ CHARACTER = 0.085
 
 AROUND = 2.3
 """Height of titles, names of scenes and the sentences below, inches."""
-
-NOTHING = "#e4e4e4"
-"""Colour of a cell without a number: no path, or never so near."""
-
-DARK_FROM = 0.6
-"""Share of the colour map from which on white letters are read more easily."""
 
 HOW_TO_READ = (
     "Left: median gap to the exact optimum of the paths found, per cent; below 100 % success, the "
@@ -93,15 +88,15 @@ def plot_overview(scores: pd.DataFrame, left_out: str = "") -> Figure:
     figure, panels = plt.subplots(1, 2, figsize=size, sharey=True, layout="constrained")
     for axes, drawn in zip(panels, maps, strict=True):
         _draw(axes, drawn, list(order))
-    figure.suptitle("Planners and scenes: how near the optimum, and how soon", fontsize=11)
-    legend(figure, {}, joined(HOW_TO_READ, left_out))
+    style.heading(figure, "Planners and scenes: how near the optimum, and how soon")
+    style.legend(figure, {}, joined(HOW_TO_READ, left_out))
     return figure
 
 
 def _gaps(scores: pd.DataFrame) -> _Map:
     gap, success = scores["gap median (%)"], scores["success (%)"]
     texts = [_gap_text(g, s) for g, s in zip(gap, success, strict=True)]
-    return _map("median gap (%)", scores, gap, texts, LEAST_GAP)
+    return _map("median gap (%)", scores, gap, texts, style.LEAST_GAP)
 
 
 def _times(scores: pd.DataFrame) -> _Map:
@@ -134,49 +129,30 @@ def _gap_text(gap: float, success: float) -> str:
 
 def _three(value: float) -> str:
     """A number with three digits at most."""
-    return plain_number(float(f"{value:.2g}" if value < 100 else f"{value:.0f}"))
+    return style.plain_number(float(f"{value:.2g}" if value < 100 else f"{value:.0f}"))
 
 
 def _draw(axes: Axes, drawn: _Map, planners: list[str]) -> None:
     """Draw one map: its cells, their numbers, the names around them."""
     values = drawn.numbers.loc[planners].to_numpy()
     texts = drawn.texts.loc[planners].to_numpy()
-    colours, norm = colouring(values, drawn.least)
+    colours, norm = style.colouring(values, drawn.least)
     shades = np.ma.masked_invalid(np.maximum(values, drawn.least))
     axes.imshow(shades, cmap=colours, norm=norm, aspect="auto")
     for (row, column), text in np.ndenumerate(texts):
         colour = _letters(norm, shades[row, column])
-        style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": SMALL - 1}
-        axes.text(column, row, text, color=colour, **style)
-    axes.set_title(drawn.title, fontsize=10)
+        letters: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": style.SMALLEST}
+        axes.text(column, row, text, color=colour, **letters)
+    axes.set_title(drawn.title, fontsize=style.TITLE)
     axes.set_xticks(
         range(len(drawn.numbers.columns)), drawn.numbers.columns, rotation=35, ha="right"
     )
     axes.set_yticks(range(len(planners)), planners)
-    axes.tick_params(labelsize=SMALL, length=0)
-    # White lines between the cells.
-    axes.set_xticks(np.arange(0.5, values.shape[1] - 1), minor=True)
-    axes.set_yticks(np.arange(0.5, values.shape[0] - 1), minor=True)
-    axes.grid(which="minor", color="white", linewidth=0.8)
-    axes.tick_params(which="minor", length=0)
+    axes.tick_params(labelsize=style.SMALL)
+    style.separate_cells(axes, *values.shape, width=0.8)
     axes.spines[:].set_visible(False)
-
-
-def colouring(values: Array, least: float) -> tuple[Colormap, LogNorm]:
-    """The colours of numbers and their scale, logarithmic: darker is higher.
-
-    Parameters
-    ----------
-    values : float64 of any shape
-        nan where there is none.
-    least : float
-        The scale begins here.
-    """
-    highest = np.nanmax(values) if np.isfinite(values).any() else least
-    colours = plt.get_cmap("viridis_r").with_extremes(bad=NOTHING)
-    return colours, LogNorm(least, max(highest, 10.0 * least))
 
 
 def _letters(norm: LogNorm, shade: Any) -> str:
     """Black or white, whichever is read on the colour of a cell."""
-    return "black" if np.ma.is_masked(shade) or norm(shade) < DARK_FROM else "white"
+    return "black" if np.ma.is_masked(shade) or norm(shade) < style.DARK_FROM else "white"

@@ -14,7 +14,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suite.report.figures.panels import legend
+from suite.report.figures.style import LABEL, TITLE, heading, legend
 from suite.report.statistics.anytime import Steps
 from suite.report.statistics.inference import LEVEL
 from suite.report.tables.ranking import Ranking, rankings, scene_scores
@@ -98,7 +98,7 @@ def plot_ranks(found: Sequence[Ranking]) -> Figure:
     )
     for axes, ranking, bars in zip(grid.flat, found, bands, strict=True):
         _draw(axes, ranking, bars, beside / length)
-    figure.suptitle("Mean ranks, and the critical difference", fontsize=11)
+    heading(figure, "Mean ranks, and the critical difference")
     legend(figure, {}, HOW_TO_READ)
     return figure
 
@@ -201,7 +201,7 @@ def _draw(axes: Axes, ranking: Ranking, bars: Sequence[Bar], beside: float) -> N
     axes.set_xlim(1.0 - room, count + room)
     axes.set_ylim(depth + _rows(count), -2.0)
     axes.axis("off")
-    axes.set_title(f"{ranking.name} ({len(ranking.ranks)} scenes)", fontsize=10)
+    axes.set_title(f"{ranking.name} ({len(ranking.ranks)} scenes)", fontsize=TITLE)
     _draw_axis(axes, count)
     _draw_difference(axes, ranking.critical_difference, count)
     for i, (low, high, colour) in enumerate(bars):
@@ -214,7 +214,7 @@ def _draw_axis(axes: Axes, count: int) -> None:
     axes.plot([1, count], [0, 0], color="black", linewidth=1.0)
     for rank in range(1, count + 1):
         axes.plot([rank, rank], [0, -0.2], color="black", linewidth=1.0)
-        axes.text(rank, -0.3, str(rank), ha="center", va="bottom", fontsize=9)
+        axes.text(rank, -0.3, str(rank), ha="center", va="bottom", fontsize=LABEL)
 
 
 def _draw_difference(axes: Axes, difference: float, count: int) -> None:
@@ -222,7 +222,7 @@ def _draw_difference(axes: Axes, difference: float, count: int) -> None:
     end = 1.0 + min(difference, count - 1.0)
     axes.plot([1.0, end], [-1.25, -1.25], color="black", linewidth=1.6, marker="|", markersize=7)
     text = f"CD = {difference:.2f}"
-    axes.text((1.0 + end) / 2, -1.4, text, ha="center", va="bottom", fontsize=9)
+    axes.text((1.0 + end) / 2, -1.4, text, ha="center", va="bottom", fontsize=LABEL)
 
 
 def _draw_names(axes: Axes, mean: "pd.Series[Any]", depth: float, gap: float) -> None:
@@ -242,6 +242,6 @@ def _draw_names(axes: Axes, mean: "pd.Series[Any]", depth: float, gap: float) ->
             name,
             ha=side,
             va="center",
-            fontsize=9,
+            fontsize=LABEL,
             in_layout=False,
         )

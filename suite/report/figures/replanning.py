@@ -10,13 +10,15 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from suite.report.figures.style import LABEL, LINES, SMALL
+
 READING = (
     "Left: wall time of one call, over all updates of all runs; a dot for the median, a bar for "
     "the middle 90 %, a cross for the worst. Right: length of the ways above that of a robot that "
     "follows the exact shortest path of each update; each ring is a run."
 )
 
-DOT, RING = "#0072b2", "#d55e00"
+DOT, RING = LINES[1][0], LINES[0][0]
 ROW = 0.24
 """Height of a planner's line, inches."""
 
@@ -47,13 +49,13 @@ def plot_replanning(runs: pd.DataFrame, replans: pd.DataFrame) -> Figure:
         there = (asked["scene"] == scene) & (asked["world"] == world)
         _draw_latencies(left, asked[there], planners)
         _draw_lengths(right, runs[here], planners)
-        left.set_title(f"{scene}, {world}", fontsize=9, loc="left")
+        left.set_title(f"{scene}, {world}", fontsize=LABEL, loc="left")
         for axes in (left, right):
             _arrange(axes, planners)
         right.tick_params(labelleft=False)
-    grid[-1, 0].set_xlabel("latency of an update (ms)", fontsize=9)
-    grid[-1, 1].set_xlabel("way above the exact follower's (%)", fontsize=9)
-    figure.supxlabel(READING, fontsize=8, wrap=True)
+    grid[-1, 0].set_xlabel("latency of an update (ms)", fontsize=LABEL)
+    grid[-1, 1].set_xlabel("way above the exact follower's (%)", fontsize=LABEL)
+    figure.supxlabel(READING, fontsize=SMALL, wrap=True)
     return figure
 
 
@@ -82,8 +84,8 @@ def _draw_lengths(axes: Axes, runs: pd.DataFrame, planners: Sequence[str]) -> No
 
 
 def _arrange(axes: Axes, planners: Sequence[str]) -> None:
-    axes.set_yticks(range(len(planners)), planners, fontsize=8)
+    axes.set_yticks(range(len(planners)), planners, fontsize=SMALL)
     axes.set_ylim(len(planners) - 0.5, -0.5)
-    axes.tick_params(axis="x", labelsize=8)
+    axes.tick_params(axis="x", labelsize=SMALL)
     axes.grid(axis="x", linewidth=0.4, color="#d0d0d0")
     axes.set_axisbelow(True)

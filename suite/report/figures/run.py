@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from suite.planner import Snapshot
-from suite.report.figures.scene import plot_run, save
-from suite.scenes.catalogue import load_scene
+from suite.report.figures.files import save
+from suite.report.figures.scene import plot_run
+from suite.scenes.catalogue import scene_as_it_was
 from suite.scenes.exact import shortest_path
 from suite.store.record import RunRecord
 
@@ -19,8 +20,7 @@ def draw_record(record: RunRecord, snapshots: Sequence[Snapshot], file: Path) ->
         If the file can't be written.
     """
     cell = record.cell
-    scene = load_scene(cell.scene_source)
-    query = scene.query(cell.query)
+    scene, query = scene_as_it_was(cell.scene_source, cell.query, cell.scene_hash)
     exact = shortest_path(scene, query)
     outcome = f"{record.cost:.2f} m" if record.cost is not None else str(record.status)
     figure = plot_run(

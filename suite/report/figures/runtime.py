@@ -12,10 +12,13 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from suite.report.figures.panels import PLANNERS_AT_MOST, legend, logarithmic_time, look, numbered
-from suite.report.statistics.anytime import Array, Steps, first_within, on_clock, only
-from suite.report.statistics.clock import joined, untimed_note
+from suite.report.figures.panels import PLANNERS_AT_MOST
+from suite.report.figures.style import heading, legend, logarithmic_time, look, numbered, rules
+from suite.report.statistics.anytime import Steps, first_within, on_clock, only
+from suite.report.statistics.clock import untimed_note
+from suite.report.statistics.inference import Array
 from suite.report.tables.ranking import scene_scores
+from suite.report.words import counted, joined
 
 TARGETS = 10.0 ** np.linspace(0.0, -3.0, 31)
 """Gaps from 100 % to 0.1 %, ten to a decade."""
@@ -81,8 +84,8 @@ def plot_ecdf(steps: Steps) -> Figure:
         _draw_ecdf(axes, reached, variants, named)
         axes.set_xlabel(label)
     panels[0].set_ylabel("share of runs and targets reached")
-    figure.suptitle("How soon runs come near the optimum", fontsize=11)
-    scenes = _scenes(with_optimum.runs["place"].nunique())
+    heading(figure, "How soon runs come near the optimum")
+    scenes = counted(with_optimum.runs["place"].nunique(), "scene")
     note = ECDF_NOTE.format(scenes=scenes, targets=len(TARGETS))
     legend(figure, planners, joined(note, untimed_note(with_optimum.runs)))
     return figure
@@ -144,15 +147,11 @@ def plot_profile(scores: pd.DataFrame) -> Figure:
     axes.set_ylim(-0.02, 1.03)
     axes.set_xlabel("time, as a multiple of the fastest planner's")
     axes.set_ylabel("share of scenes")
-    figure.suptitle("Performance profile: time to come within 1 % of the optimum", fontsize=11)
-    legend(figure, planners, PROFILE_NOTE.format(scenes=_scenes(ratios.shape[1])))
+    heading(figure, "Performance profile: time to come within 1 % of the optimum")
+    legend(figure, planners, PROFILE_NOTE.format(scenes=counted(ratios.shape[1], "scene")))
     return figure
 
 
 def _logarithmic(axes: Axes, low: float, high: float) -> None:
     logarithmic_time(axes, low, high)
-    axes.grid(alpha=0.3, linewidth=0.5)
-
-
-def _scenes(count: int) -> str:
-    return f"{count} scene{'s' if count != 1 else ''}"
+    rules(axes)

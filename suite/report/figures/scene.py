@@ -1,16 +1,12 @@
 """Pictures of scenes, runs and results. Metres, x right, y up, one scale for both axes.
 
-Colours are Okabe and Ito's, told apart by colour-blind readers; line style and width tell the same
-lines apart in grey.
+Line style and width tell lines apart in grey.
 """
 
-import io
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-import PIL.Image
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
@@ -19,29 +15,8 @@ from matplotlib.path import Path as Outline
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
-from suite.errors import KbgaBenchError
+from suite.report.figures import style
 from suite.scenes.scene import Query, Scene
-
-SUFFIXES = (".png", ".pdf", ".svg")
-
-OBSTACLE = "#c8c8c8"
-OBSTACLE_EDGE = "#707070"
-OPTIMUM = "#000000"
-POPULATION = "#56b4e9"
-BEST = "#d55e00"
-INVALID = "#cc79a7"
-
-LINES = (
-    ("#d55e00", "-"),
-    ("#0072b2", "--"),
-    ("#009e73", "-."),
-    ("#cc79a7", (0, (3, 1, 1, 1, 1, 1))),
-    ("#e69f00", (0, (5, 1))),
-    ("#56b4e9", ":"),
-    ("#8c510a", (0, (6, 2, 1, 2))),
-    ("#666666", (0, (1, 1))),
-    ("#3b0f8c", (0, (2, 2))),
-)
 
 WIDTH = 6.0
 LEGEND_LINE = 0.19
@@ -50,10 +25,6 @@ AROUND = 0.8
 
 ONE_COLUMN_FROM = 34
 """Characters of a legend's line of which two no longer stand side by side."""
-
-RASTER_DPI = 130
-RASTER_COLOURS = 96
-"""Enough for lines, shades and their soft edges, in a third of the bytes of all colours."""
 
 
 def plot_run(
@@ -91,16 +62,20 @@ def plot_run(
         axes.add_collection(
             LineCollection(
                 list(first_population),
-                colors=POPULATION,
+                colors=style.POPULATION,
                 linewidths=0.6,
                 alpha=0.55,
                 label=f"first population ({len(first_population)} paths)",
             )
         )
     if path is not None:
-        axes.plot(*path.T, color=BEST, linewidth=2.4, marker=".", markersize=7, label=path_label)
+        axes.plot(
+            *path.T, color=style.BEST, linewidth=2.4, marker=".", markersize=7, label=path_label
+        )
     if optimum is not None:
-        axes.plot(*optimum.T, color=OPTIMUM, linewidth=1.3, linestyle="--", label=optimum_label)
+        axes.plot(
+            *optimum.T, color=style.OPTIMUM, linewidth=1.3, linestyle="--", label=optimum_label
+        )
     _finish(figure, axes, query, scene.name)
     return figure
 
@@ -130,78 +105,19 @@ def plot_scene_results(
     figure, axes = _scene_figure(scene)
     widths = np.linspace(5.0, 1.2, max(len(best), 2))
     for i, (planner, path) in enumerate(best.items()):
-        colour, style = LINES[i % len(LINES)]
+        colour, line = style.LINES[i % len(style.LINES)]
         label = (labels or {}).get(planner, planner)
         if path is None:
             axes.plot([], [], linestyle="none", label=label)
         else:
-            axes.plot(*path.T, color=colour, linestyle=style, linewidth=widths[i], label=label)
+            axes.plot(*path.T, color=colour, linestyle=line, linewidth=widths[i], label=label)
     _finish(figure, axes, query, scene.name)
     return figure
 
 
-def check_figure_file(file: Path) -> None:
-    """Refuse a file that a figure can't be written to, before anything is run for it.
-
-    Raises
-    ------
-    KbgaBenchError
-        If its kind is unknown or its folder is missing.
-    """
-    check_file(file, "figures", SUFFIXES)
-
-
-def check_file(file: Path, what: str, suffixes: Sequence[str]) -> None:
-    """Refuse a file of a kind that these things can't be, or in a folder that there is not.
-
-    Raises
-    ------
-    KbgaBenchError
-    """
-    if file.suffix.lower() not in suffixes:
-        raise KbgaBenchError(f"{file}: {what} are {', '.join(suffixes)}. Name such a file.")
-    if not file.parent.is_dir():
-        raise KbgaBenchError(f"{file}: there is no folder {file.parent}. Make it first.")
-
-
-def save(figure: Figure, file: Path) -> None:
-    """Write a figure and let go of it; the same figure gives the same bytes.
-
-    Raises
-    ------
-    KbgaBenchError
-        If the file can't be written.
-    """
-    dated = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}
-    suffix = file.suffix.lower()
-    try:
-        if suffix == ".png":
-            file.write_bytes(as_png(figure))
-        else:
-            with plt.rc_context({"svg.hashsalt": "kbga-bench"}):
-                figure.savefig(file, metadata=dated.get(suffix))
-    except OSError as error:
-        raise KbgaBenchError(f"{file}: can't be written ({error.strerror}).") from error
-    finally:
-        plt.close(figure)
-
-
-def as_png(figure: Figure) -> bytes:
-    """Draw a figure and let go of it; the same figure gives the same bytes."""
-    drawn, small = io.BytesIO(), io.BytesIO()
-    try:
-        figure.savefig(drawn, format="png", dpi=RASTER_DPI)
-    finally:
-        plt.close(figure)
-    with PIL.Image.open(drawn) as image:
-        image.convert("RGB").quantize(RASTER_COLOURS).save(small, format="png", optimize=True)
-    return small.getvalue()
-
-
 def _scene_figure(scene: Scene) -> tuple[Figure, Axes]:
-    xmin, ymin, xmax, ymax = scene.bounds
-    height = WIDTH * min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0) + AROUND
-    figure, axes = plt.subplots(figsize=(WIDTH, height), layout="constrained")
+    size = (WIDTH, style.height_for(scene, WIDTH) + AROUND)
+    figure, axes = plt.subplots(figsize=size, layout="constrained")
     draw_room(axes, scene)
     draw_obstacles(axes, scene, 0.7)
     return figure, axes
@@ -213,8 +129,8 @@ def draw_obstacles(axes: Axes, scene: Scene, linewidth: float) -> None:
         axes.add_patch(
             PathPatch(
                 outline(obstacle.polygon),
-                facecolor=OBSTACLE,
-                edgecolor=OBSTACLE_EDGE,
+                facecolor=style.OBSTACLE,
+                edgecolor=style.OBSTACLE_EDGE,
                 linewidth=linewidth,
             )
         )
@@ -247,13 +163,11 @@ def draw_ends(axes: Axes, query: Query, scale: float = 1.0) -> None:
             *point,
             marker=marker,
             markersize=scale * (9 if marker == "o" else 14),
-            markerfacecolor="white",
-            markeredgecolor="black",
             markeredgewidth=max(1.4 * scale, 0.8),
-            linestyle="none",
             label=name,
             zorder=5,
             clip_on=False,
+            **style.ENDS,
         )
 
 
@@ -266,6 +180,4 @@ def _finish(figure: Figure, axes: Axes, query: Query, title: str) -> None:
     columns = 1 if max(map(len, labels)) >= ONE_COLUMN_FROM else 2
     width, height = figure.get_size_inches()
     figure.set_size_inches(width, height + LEGEND_LINE * -(-len(labels) // columns))
-    figure.legend(
-        loc="outside lower center", ncols=columns, handlelength=3.6, frameon=False, fontsize=9
-    )
+    style.legend_below(figure, ncols=columns, handlelength=3.6)

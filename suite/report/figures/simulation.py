@@ -19,18 +19,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 
-from suite.errors import KbgaBenchError
-from suite.report.figures.scene import (
-    BEST,
-    OBSTACLE,
-    OBSTACLE_EDGE,
-    check_file,
-    draw_ends,
-    draw_room,
-    outline,
-)
+from suite.errors import KbgaBenchError, check_file, writing
+from suite.report.figures import style
+from suite.report.figures.scene import draw_ends, draw_room, outline
 from suite.simulation.run import Outcome, Simulation
-from suite.simulation.view import Sight, View, update_times, view_at
+from suite.simulation.view import Sight, View, is_turn, update_times, view_at
 
 ANIMATIONS = (".gif", ".mp4")
 
@@ -38,9 +31,6 @@ MOST_PANELS = 12
 COLUMNS = 4
 PANEL = 2.0
 """Width of a panel, inches."""
-
-TURN_M = 1.0
-"""A path ahead that becomes longer or shorter by more is news, metres."""
 
 FRAMES_PER_SECOND = 10
 """Frames for each simulated second, as long as they are not more than MOST_FRAMES."""
@@ -53,7 +43,7 @@ FRAME = 5.0
 FRAME_DPI = 100
 
 LOOKS: dict[Sight, dict[str, Any]] = {
-    Sight.STILL: {"facecolor": OBSTACLE, "edgecolor": OBSTACLE_EDGE, "linewidth": 0.7},
+    Sight.STILL: {"facecolor": style.OBSTACLE, "edgecolor": style.OBSTACLE_EDGE, "linewidth": 0.7},
     Sight.MOVING: {
         "facecolor": "#8f8f8f",
         "edgecolor": "#303030",
@@ -62,13 +52,13 @@ LOOKS: dict[Sight, dict[str, Any]] = {
     },
     Sight.UNDETECTED: {
         "facecolor": "none",
-        "edgecolor": OBSTACLE_EDGE,
+        "edgecolor": style.OBSTACLE_EDGE,
         "linewidth": 0.9,
         "linestyle": (0, (3, 2)),
     },
 }
-TRAIL: dict[str, Any] = {"color": "#0072b2", "linestyle": "-"}
-PATH: dict[str, Any] = {"color": BEST, "linestyle": (0, (4, 1.5))}
+TRAIL: dict[str, Any] = {"color": style.LINES[1][0], "linestyle": "-"}
+PATH: dict[str, Any] = {"color": style.BEST, "linestyle": (0, (4, 1.5))}
 ROBOT: dict[str, Any] = {
     "marker": "o",
     "markerfacecolor": "black",
@@ -76,7 +66,7 @@ ROBOT: dict[str, Any] = {
     "markeredgewidth": 0.5,
     "linestyle": "none",
 }
-HIT: dict[str, Any] = {"marker": "X", "color": "#cc79a7", "markeredgecolor": "black"}
+HIT: dict[str, Any] = {"marker": "X", "color": style.LINES[3][0], "markeredgecolor": "black"}
 
 
 def plot_snapshots(run: Simulation, most: int = MOST_PANELS) -> Figure:
@@ -98,7 +88,7 @@ def plot_snapshots(run: Simulation, most: int = MOST_PANELS) -> Figure:
     Hu and Yang, Fig. 11 and 12.
     """
     views = [view_at(run, time) for time in snapshot_times(run, most)]
-    columns, height = min(COLUMNS, len(views)), _height_for(run, PANEL)
+    columns, height = min(COLUMNS, len(views)), style.height_for(run.scene, PANEL)
     rows = -(-len(views) // columns)
     size = (PANEL * max(columns, 2) + 0.5, (height + 0.15) * rows + 0.8)
     figure, grid = plt.subplots(
@@ -109,11 +99,10 @@ def plot_snapshots(run: Simulation, most: int = MOST_PANELS) -> Figure:
     for letter, axes, view in zip(ascii_lowercase, grid.flat, views, strict=False):
         _draw(axes, run, view, scale=0.6)
         # Updates come at round times, but the interval may be any.
-        axes.set_title(f"({letter}) t = {round(view.time, 2):g} s{_end(run, view)}", fontsize=9)
-        axes.tick_params(labelsize=7)
-        axes.set_xlabel("x (m)", fontsize=8)
-        axes.set_ylabel("y (m)", fontsize=8)
-        axes.label_outer(remove_inner_ticks=True)
+        axes.set_title(
+            f"({letter}) t = {round(view.time, 2):g} s{_end(run, view)}", fontsize=style.LABEL
+        )
+        style.label_metres(axes)
     _legend(figure, run, views, columns=4 if columns > 2 else 2)
     return figure
 
@@ -144,16 +133,12 @@ def _with_one_before(times: Sequence[float], event: float) -> list[int]:
 
 def _turns(run: Simulation) -> set[float]:
     """Times of the plans that are longer or shorter than what was left of the plan before."""
-    turns = set()
-    for old, new in pairwise(run.replans):
-        if old.cost is None or new.cost is None:
-            is_turn = (old.cost is None) != (new.cost is None)
-        else:
-            left = old.cost - run.settings.speed * (new.time - old.time)
-            is_turn = abs(new.cost - left) > TURN_M
-        if is_turn:
-            turns.add(new.time)
-    return turns
+    speed = run.settings.speed
+    return {
+        new.time
+        for old, new in pairwise(run.replans)
+        if is_turn(old.cost, new.cost, speed * (new.time - old.time))
+    }
 
 
 def frame_times(run: Simulation) -> list[float]:
@@ -195,7 +180,7 @@ def animate(run: Simulation, file: Path) -> None:
     """
     views = [view_at(run, time) for time in frame_times(run)]
     figure, axes = plt.subplots(
-        figsize=(FRAME, _height_for(run, FRAME) + 1.0), layout="constrained"
+        figsize=(FRAME, style.height_for(run.scene, FRAME) + 1.0), layout="constrained"
     )
 
     def draw(view: View) -> None:
@@ -216,19 +201,12 @@ def animate(run: Simulation, file: Path) -> None:
     writer = kind(fps=SHOWN_PER_SECOND)
     try:
         # Not by FuncAnimation, which draws each frame once more than it writes it.
-        with writer.saving(figure, str(file), FRAME_DPI):
+        with writing(file), writer.saving(figure, str(file), FRAME_DPI):
             for view in frames:
                 draw(view)
                 writer.grab_frame()
-    except OSError as error:
-        raise KbgaBenchError(f"{file}: can't be written ({error.strerror}).") from error
     finally:
         plt.close(figure)
-
-
-def _height_for(run: Simulation, width: float) -> float:
-    xmin, ymin, xmax, ymax = run.scene.bounds
-    return width * min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0)
 
 
 def _end(run: Simulation, view: View) -> str:
@@ -264,22 +242,10 @@ def _legend(figure: Figure, run: Simulation, views: Sequence[View], columns: int
         Line2D([], [], linewidth=2.0, label="current path", **PATH),
         Line2D([], [], markersize=6, label="robot", **ROBOT),
     ]
-    ends: dict[str, Any] = {
-        "markerfacecolor": "white",
-        "markeredgecolor": "black",
-        "linestyle": "none",
-    }
     handles += [
-        Line2D([], [], marker="o", markersize=7, label="start", **ends),
-        Line2D([], [], marker="*", markersize=11, label="goal", **ends),
+        Line2D([], [], marker="o", markersize=7, label="start", **style.ENDS),
+        Line2D([], [], marker="*", markersize=11, label="goal", **style.ENDS),
     ]
     if run.hits:
         handles.append(Line2D([], [], markersize=8, linestyle="none", label="hit", **HIT))
-    figure.legend(
-        handles=handles,
-        loc="outside lower center",
-        ncols=columns,
-        handlelength=3.0,
-        frameon=False,
-        fontsize=9,
-    )
+    style.legend_below(figure, handles=handles, ncols=columns, handlelength=3.0)

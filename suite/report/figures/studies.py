@@ -1,8 +1,4 @@
-"""Pictures of the studies: what a setting, an operator or the number of obstacles changes.
-
-Colours, line styles and markers say the same thing three times, for readers in grey and readers
-who do not tell the colours apart.
-"""
+"""Pictures of the studies: what a setting, an operator or the number of obstacles changes."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -14,14 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from matplotlib.ticker import FixedLocator, NullLocator
 
-from suite.report.figures.scene import LINES
+from suite.report.figures import style
 from suite.report.tables.ablation import NOTHING, ablation
-from suite.report.tables.compared import glance
+from suite.report.tables.glance import glance
 from suite.report.tables.studies import RESOLUTION, STUDIES, Study, obstacles, of_kbga_plus, sweep
 
-MARKERS = ("o", "s", "^", "D", "v", "P", "<", "*")
 PAPER = {"color": "black", "linestyle": "--", "marker": "x", "markersize": 7, "linewidth": 1.4}
 
 AXIS_LABELS = {
@@ -41,7 +35,7 @@ NO_PATH: dict[str, Any] = {
 COLUMNS = 4
 """Scenes side by side."""
 
-LEAST_GAP = 0.05
+PALEST = 0.05
 """Per cent: the lower end of the colours. What is below is as good as the optimum."""
 
 
@@ -102,36 +96,26 @@ def plot_sweep(frame: pd.DataFrame, study: Study) -> Figure:
             _arrange_values(axes, study, frame)
             axes.axvline(study.reference, color="black", linestyle=":", linewidth=1.0, zorder=1)
             if column == 0:
-                axes.set_ylabel(AXIS_LABELS[panel], fontsize=9)
-            axes.tick_params(labelsize=8)
-        grid[2 * block, column].set_title(scene, fontsize=10, pad=7)
-        grid[2 * block + 1, column].set_xlabel(study.symbol, fontsize=9)
+                axes.set_ylabel(AXIS_LABELS[panel], fontsize=style.LABEL)
+            axes.tick_params(labelsize=style.SMALL)
+        grid[2 * block, column].set_title(scene, fontsize=style.TITLE, pad=7)
+        grid[2 * block + 1, column].set_xlabel(study.symbol, fontsize=style.LABEL)
         grid[2 * block + 1, column].tick_params(labelbottom=True)
     for column in range(len(scenes) % columns or columns, columns):
         grid[-1, column].set_visible(False)
         grid[-2, column].set_visible(False)
-    figure.suptitle(f"{study.title} (dotted: {study.symbol} {study.reference:g})", fontsize=11)
+    style.heading(figure, f"{study.title} (dotted: {study.symbol} {study.reference:g})")
     if len(families) > 1:
         handles, labels = grid[0, 0].get_legend_handles_labels()
-        figure.legend(
-            handles, labels, loc="outside lower center", ncols=2, frameon=False, fontsize=9
-        )
+        style.legend_below(figure, handles=handles, labels=labels, ncols=2)
     return figure
 
 
 def _draw_families(axes: Axes, here: pd.DataFrame, families: Sequence[str], panel: str) -> None:
     for i, family in enumerate(families):
         rows = here[here["family"] == family].sort_values("value")
-        colour, style = LINES[i % len(LINES)]
         axes.plot(
-            rows["value"],
-            rows[panel],
-            color=colour,
-            linestyle=style,
-            marker=MARKERS[i % len(MARKERS)],
-            markersize=4,
-            linewidth=1.4,
-            label=family,
+            rows["value"], rows[panel], label=family, markersize=4, linewidth=1.4, **style.look(i)
         )
     if panel == "feasible (%)":
         axes.set_ylim(-4.0, 104.0)
@@ -139,13 +123,19 @@ def _draw_families(axes: Axes, here: pd.DataFrame, families: Sequence[str], pane
     elif here[panel].isna().all():
         axes.set_yticks([])
         axes.text(
-            0.5, 0.5, "no path", transform=axes.transAxes, ha="center", va="center", fontsize=9
+            0.5,
+            0.5,
+            "no path",
+            transform=axes.transAxes,
+            ha="center",
+            va="center",
+            fontsize=style.LABEL,
         )
     else:
         lowest = 1.0 if panel == "cost with penalties over optimum" else 0.0
         above = 1.12 * max(here[panel].max() - lowest, 0.1)
         axes.set_ylim(lowest - 0.04 * above, lowest + above)
-    axes.grid(alpha=0.3, linewidth=0.5)
+    style.rules(axes)
 
 
 def _arrange_values(axes: Axes, study: Study, frame: pd.DataFrame) -> None:
@@ -153,9 +143,7 @@ def _arrange_values(axes: Axes, study: Study, frame: pd.DataFrame) -> None:
     if study.logarithmic:
         axes.set_xscale("log")
     shown = values if len(values) <= 5 else values[::2]
-    axes.xaxis.set_major_locator(FixedLocator(shown))
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    style.ticks_at(axes.xaxis, shown)
 
 
 def plot_resolution(frame: pd.DataFrame, study: Study) -> Figure:
@@ -170,7 +158,7 @@ def plot_resolution(frame: pd.DataFrame, study: Study) -> Figure:
     figure, (time, gap) = plt.subplots(1, 2, figsize=(9.0, 4.6), layout="constrained")
     for i, (scene, here) in enumerate(frame.groupby("scene", sort=False)):
         has_paper = here["paper ratio"].notna().any()
-        line = _line(i) | ({"linewidth": 2.6, "zorder": 3} if has_paper else {"linewidth": 1.2})
+        line = _marked(i) | ({"linewidth": 2.6, "zorder": 3} if has_paper else {"linewidth": 1.2})
         rows = here.sort_values("value")
         time.plot(rows["value"], rows["ratio total"], label=str(scene), **line)
         gap.plot(rows["value"], rows["gap mean (%)"], **line)
@@ -181,13 +169,13 @@ def plot_resolution(frame: pd.DataFrame, study: Study) -> Figure:
     for axes in (time, gap):
         _arrange_values(axes, study, frame)
         axes.set_xlabel("resolution (lattice units per side)")
-        axes.grid(alpha=0.3, linewidth=0.5)
+        style.rules(axes)
         # From 0, with room for the markers on it.
         axes.set_ylim(bottom=-0.03 * axes.get_ylim()[1])
     time.set_ylabel("cpu time of a run, ratio to resolution 100")
     gap.set_ylabel("mean gap to the exact optimum (%)")
-    figure.suptitle(study.title, fontsize=11)
-    figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=9, handlelength=3.4)
+    style.heading(figure, study.title)
+    style.legend_below(figure, ncols=3, handlelength=3.4)
     return figure
 
 
@@ -201,24 +189,22 @@ def plot_obstacles(frame: pd.DataFrame) -> Figure:
     """
     figure, (time, check) = plt.subplots(1, 2, figsize=(9.0, 4.4), layout="constrained")
     x = frame["value"]
-    time.plot(x, frame["ratio total"], label="a whole run", **_line(0))
-    time.plot(x, frame["ratio to best"], label="until the best was found", **_line(1))
+    time.plot(x, frame["ratio total"], label="a whole run", **_marked(0))
+    time.plot(x, frame["ratio to best"], label="until the best was found", **_marked(1))
     time.plot(x, frame["paper ratio"], label="paper", **PAPER)
     time.set_ylabel("cpu time, ratio to 20 obstacles")
-    time.legend(frameon=False, fontsize=9, handlelength=3.4)
-    check.plot(x, frame["cpu per check (us)"], **_line(0))
+    time.legend(frameon=False, fontsize=style.LABEL, handlelength=3.4)
+    check.plot(x, frame["cpu per check (us)"], **_marked(0))
     check.set_ylabel("cpu time of a run per collision check (µs)")
     for axes in (time, check):
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_xlabel("obstacles")
-        axes.xaxis.set_major_locator(FixedLocator(sorted(set(x))))
-        axes.xaxis.set_minor_locator(NullLocator())
-        axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        axes.tick_params(axis="x", labelsize=8)
-        axes.grid(alpha=0.3, linewidth=0.5)
+        style.ticks_at(axes.xaxis, sorted(set(x)))
+        axes.tick_params(axis="x", labelsize=style.SMALL)
+        style.rules(axes)
         _plain_logarithm(axes)
-    figure.suptitle("KBGA among more and more obstacles", fontsize=11)
+    style.heading(figure, "KBGA among more and more obstacles")
     return figure
 
 
@@ -230,9 +216,7 @@ def _plain_logarithm(axes: Axes) -> None:
     decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
     ticks = [float(d * step) for d in decades for step in steps if low <= d * step <= high]
     axes.set_ylim(low, high)
-    axes.yaxis.set_major_locator(FixedLocator(ticks))
-    axes.yaxis.set_minor_locator(NullLocator())
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    style.ticks_at(axes.yaxis, ticks)
 
 
 def plot_ablation(frame: pd.DataFrame) -> Figure:
@@ -252,7 +236,7 @@ def plot_ablation(frame: pd.DataFrame) -> Figure:
     figure, axes = plt.subplots(
         figsize=(3.4 + 0.92 * len(scenes), 1.0 + 0.33 * len(names)), layout="constrained"
     )
-    norm = LogNorm(LEAST_GAP, 100.0)
+    norm = LogNorm(PALEST, 100.0)
     gaps = np.full((len(names), len(scenes)), np.nan)
     for i, (family, off) in enumerate(names):
         for j, scene in enumerate(scenes):
@@ -260,29 +244,25 @@ def plot_ablation(frame: pd.DataFrame) -> Figure:
             if row is None:
                 continue
             if row["feasible"]:
-                gaps[i, j] = min(max(float(row["gap mean (%)"]), LEAST_GAP), 100.0)
+                gaps[i, j] = min(max(float(row["gap mean (%)"]), PALEST), 100.0)
             else:
                 axes.add_patch(Rectangle((j - 0.5, i - 0.5), 1, 1, **NO_PATH))
             _write_cell(axes, i, j, row, gaps[i, j], norm)
-    figure.suptitle(
+    style.heading(
+        figure,
         "KBGA without some of its operators (n/m: runs that found a path; hatched: none did)",
-        fontsize=11,
     )
     image = axes.imshow(gaps, cmap="Greys", norm=norm, aspect="auto")
-    axes.set_xticks(range(len(scenes)), scenes, fontsize=8)
+    axes.set_xticks(range(len(scenes)), scenes, fontsize=style.SMALL)
     axes.xaxis.tick_top()
-    axes.set_yticks(range(len(names)), _ablation_labels(names), fontsize=9)
-    axes.tick_params(length=0)
-    axes.set_xticks(np.arange(0.5, len(scenes) - 1), minor=True)
-    axes.set_yticks(np.arange(0.5, len(names) - 1), minor=True)
-    axes.grid(which="minor", color="white", linewidth=1.2)
-    axes.tick_params(which="minor", length=0)
+    axes.set_yticks(range(len(names)), _ablation_labels(names), fontsize=style.LABEL)
+    style.separate_cells(axes, *gaps.shape, width=1.2)
     families = [str(family) for family, _ in names]
     for i in range(1, len(names)):
         if families[i] != families[i - 1]:
             axes.axhline(i - 0.5, color="black", linewidth=1.2)
     bar = figure.colorbar(image, ax=axes, shrink=0.7, pad=0.01)
-    bar.set_label("mean gap to the exact optimum (%)", fontsize=9)
+    bar.set_label("mean gap to the exact optimum (%)", fontsize=style.LABEL)
     bar.ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     return figure
 
@@ -296,7 +276,7 @@ def _write_cell(axes: Axes, i: int, j: int, row: dict[Any, Any], gap: float, nor
         glance(row).replace(" of ", "/").replace(" (", "\n("),
         ha="center",
         va="center",
-        fontsize=7,
+        fontsize=style.SMALLEST,
         linespacing=0.95,
         color="white" if dark else "black",
         bbox=None if row["feasible"] else {"facecolor": "white", "edgecolor": "none", "pad": 1},
@@ -312,11 +292,5 @@ def _ablation_labels(names: Sequence[tuple[Any, ...]]) -> list[str]:
     return labels
 
 
-def _line(i: int) -> dict[str, Any]:
-    colour, style = LINES[i % len(LINES)]
-    return {
-        "color": colour,
-        "linestyle": style,
-        "marker": MARKERS[i % len(MARKERS)],
-        "markersize": 5,
-    }
+def _marked(i: int) -> dict[str, Any]:
+    return style.look(i) | {"markersize": 5}

@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import Any
 
-from suite.report.table import Table, as_texts, is_numeric
+from suite.report.formats import as_texts, is_numeric
+from suite.report.table import Table
 
 ROWS_AT_MOST = 1000
 
@@ -53,8 +54,7 @@ def sheet(table: Table) -> Sheet:
     table : Table
     """
     frame = table.frame[:ROWS_AT_MOST]
-    shown = Table(table.name, table.title, frame, table.note, table.infinite, table.detail)
-    texts = as_texts(shown)
+    texts = as_texts(replace(table, frame=frame))
     columns = [
         [Cell(text, _number(value)) for text, value in zip(texts[name], frame[name], strict=True)]
         for name in frame.columns

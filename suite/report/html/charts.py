@@ -13,13 +13,14 @@ import plotly.graph_objects as go
 from numpy.typing import NDArray
 
 from suite.report.figures.convergence import CLOCKS, counted_groups, gap_bands, grid_over
-from suite.report.figures.panels import LEAST_GAP, plain_number
 from suite.report.figures.runtime import CLOCKS as ECDF_CLOCKS
 from suite.report.figures.runtime import TARGETS
+from suite.report.figures.style import LEAST_GAP, gap_scale, gap_text, plain_number
 from suite.report.html.appearance import PLANNERS_AT_MOST, Appearance, appearance
 from suite.report.html.scenes import SCENES_AT_MOST
-from suite.report.statistics.anytime import Array, Steps, first_within, only
+from suite.report.statistics.anytime import Steps, first_within, only
 from suite.report.statistics.clock import WALL, by_the_clock
+from suite.report.statistics.inference import Array
 
 HIGHEST = 1e6
 """Per cent: stands for no path, above every chart."""
@@ -221,17 +222,16 @@ def _edge(look: Appearance, fill: str = "none") -> dict[str, Any]:
 
 def _gap_layout(label: str, x: Array, bands: Iterable[Array]) -> dict[str, Any]:
     medians = 100.0 * np.array([band[1] for band in bands])
-    highest = max(float(medians[np.isfinite(medians)].max(initial=0.0)), 10.0)
-    ticks = 10.0 ** np.arange(-2, np.ceil(np.log10(highest)) + 1)
+    ends, ticks = gap_scale(medians)
     return _layout(
         label,
         x,
         {
             "title": {"text": "gap to the optimum (%)"},
             "type": "log",
-            "range": [float(np.log10(0.7 * LEAST_GAP)), float(np.log10(1.5 * highest))],
-            "tickvals": ticks.tolist(),
-            "ticktext": [f"≤ {tick:g}" if tick <= LEAST_GAP else f"{tick:g}" for tick in ticks],
+            "range": np.log10(ends).tolist(),
+            "tickvals": ticks,
+            "ticktext": [gap_text(tick) for tick in ticks],
         },
     )
 

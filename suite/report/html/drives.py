@@ -4,11 +4,10 @@ import base64
 from dataclasses import dataclass
 
 from suite.errors import KbgaBenchError
-from suite.report.figures.scene import as_png
+from suite.report.figures.files import as_png
 from suite.report.figures.simulation import plot_snapshots
 from suite.report.html.evidence import Evidence
-from suite.scenes.catalogue import load_scene
-from suite.scenes.scene import scene_fingerprint
+from suite.scenes.catalogue import scene_as_it_was
 from suite.simulation.record import from_data
 from suite.store.read import read_simulation
 
@@ -45,11 +44,7 @@ def drive_sheets(evidence: Evidence) -> tuple[list[DriveSheet], int]:
             f"{row['variant']}: the run ended as {row['status']}."
         )
         try:
-            scene = load_scene(str(row["scene_source"]))
-            if scene_fingerprint(scene, scene.query(row["query"])) != row["scene_hash"]:
-                reason = "The scene has changed since this run, so that it is not drawn."
-                sheets.append(DriveSheet(title, alt, "", reason))
-                continue
+            scene, _ = scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])
             data = read_simulation(evidence.store, row["key"])
         except KbgaBenchError as error:
             sheets.append(DriveSheet(title, alt, "", f"It can't be drawn: {error}"))

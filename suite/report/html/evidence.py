@@ -9,22 +9,18 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from suite.planner import Snapshot
-from suite.report.all_tables import all_tables
-from suite.report.figures.panels import numbered
-from suite.report.rows import newest
+from suite.report.all_tables import read_tables
+from suite.report.figures.style import numbered
+from suite.report.rows import is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import fair
 from suite.report.table import Table
-from suite.report.tables.simulated import is_simulated
 from suite.store.read import (
     read_conflicts,
     read_events,
-    read_first_measures,
     read_paths,
-    read_replans,
     read_runs,
     read_sessions,
-    read_simulations,
     read_snapshots,
     read_wanted,
 )
@@ -89,25 +85,10 @@ def read_evidence(store: Path, reference: str | None = None) -> Evidence:
         current=current,
         steps=steps_of(fair(current[~is_simulated(current)]), events),
         planners=numbered(current["variant"]),
-        tables=_tables(store, runs, events, reference),
+        tables=[] if runs.empty else read_tables(store, reference, runs=runs, events=events),
         paths=read_paths(store),
         snapshots=read_snapshots(store),
         wanted=read_wanted(store),
         conflicts=len(read_conflicts(store)),
         sessions=read_sessions(store),
-    )
-
-
-def _tables(
-    store: Path, runs: pd.DataFrame, events: pd.DataFrame, reference: str | None
-) -> list[Table]:
-    if runs.empty:
-        return []
-    return all_tables(
-        runs,
-        read_first_measures(store),
-        events,
-        simulations=read_simulations(store),
-        replans=read_replans(store),
-        reference=reference,
     )

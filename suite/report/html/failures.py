@@ -5,8 +5,9 @@ from typing import Any
 import pandas as pd
 
 from suite.planner import PlanStatus
+from suite.report.rows import places
 from suite.report.table import Table
-from suite.report.tables.compared import places
+from suite.report.words import some_of
 
 REASONS_AT_MOST = 30
 """Told in full; of more there is the last line."""
@@ -34,7 +35,7 @@ def failures_table(runs: pd.DataFrame) -> Table:
             "planner": planner,
             "status": status,
             "runs": len(group),
-            "scenes": _some(group["place"]),
+            "scenes": some_of(group["place"], 4),
             "reason": reason,
             "example": group["key"].iloc[0],
         }
@@ -76,10 +77,3 @@ def _groups(runs: pd.DataFrame) -> Any:
     )
     lost = lost.assign(last=last.where(last != "", missing))
     return lost.groupby(["variant", "status", "last"], sort=False)
-
-
-def _some(names: "pd.Series[str]") -> str:
-    """A few names, and how many more."""
-    different = list(dict.fromkeys(map(str, names)))
-    more = f" and {len(different) - 4} more" if len(different) > 4 else ""
-    return ", ".join(different[:4]) + more

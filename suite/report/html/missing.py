@@ -1,7 +1,5 @@
 """What the store does not hold, counted: a reader must know what a table does not speak of."""
 
-from collections.abc import Iterable
-
 import numpy as np
 import pandas as pd
 
@@ -9,6 +7,7 @@ from suite.report.html.evidence import Evidence
 from suite.report.html.scenes import ScenePicture
 from suite.report.statistics.clock import by_the_clock
 from suite.report.table import Table
+from suite.report.words import some_of
 
 NAMES_AT_MOST = 8
 
@@ -87,7 +86,7 @@ def _without_optimum(evidence: Evidence) -> _Row:
     runs = evidence.steps.runs[np.isnan(evidence.steps.optimum)]
     names = list(dict.fromkeys(runs["place"]))
     follows = "no path exists, or no run came far enough to be told it; there is no gap"
-    return "scenes without an optimum", len(names), _some(names), follows
+    return "scenes without an optimum", len(names), some_of(names, NAMES_AT_MOST), follows
 
 
 def _not_drawn(pictures: list[ScenePicture]) -> _Row:
@@ -95,7 +94,7 @@ def _not_drawn(pictures: list[ScenePicture]) -> _Row:
     return (
         "scenes that are gone or have changed since",
         len(names),
-        _some(names),
+        some_of(names, NAMES_AT_MOST),
         "they are not drawn",
     )
 
@@ -115,10 +114,4 @@ def _conflicts(evidence: Evidence) -> _Row:
 
 def _by(planners: "pd.Series[str]") -> str:
     counts = planners.value_counts(sort=False)
-    return _some(f"{name} {count}" for name, count in counts.items())
-
-
-def _some(names: Iterable[str]) -> str:
-    names = list(names)
-    more = f" and {len(names) - NAMES_AT_MOST} more" if len(names) > NAMES_AT_MOST else ""
-    return ", ".join(names[:NAMES_AT_MOST]) + more
+    return some_of((f"{name} {count}" for name, count in counts.items()), NAMES_AT_MOST)

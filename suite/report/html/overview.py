@@ -7,13 +7,14 @@ import numpy as np
 import pandas as pd
 
 from suite.planner import PlanStatus
-from suite.report.figures.panels import LEAST_GAP
+from suite.report.figures.style import LEAST_GAP
 from suite.report.html.cells import Sheet, sheet
 from suite.report.html.evidence import Evidence
 from suite.report.html.shades import shaded
 from suite.report.table import Table
-from suite.report.tables.compared import at_a_glance
+from suite.report.tables.glance import at_a_glance
 from suite.report.tables.summary import summary
+from suite.report.words import fixed, of_some
 
 GAP_NOTE = (
     "Mean gap of the paths found to the exact shortest one, per cent: 0 is optimal. In brackets "
@@ -69,12 +70,9 @@ def _by_status(runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def _gap(row: Mapping[Any, Any]) -> str:
-    share = f"{row['solved']} of {row['runs']}"
     if pd.isna(row["gap mean (%)"]):
-        return share
-    # Rounding may leave a zero with a sign.
-    gap = f"{round(row['gap mean (%)'], 2) + 0.0:.2f}"
-    return gap if row["solved"] == row["runs"] else f"{gap} ({share})"
+        return f"{row['solved']} of {row['runs']}"
+    return of_some(fixed(row["gap mean (%)"]), row["solved"], row["runs"])
 
 
 def _count(number: int, what: str) -> str:

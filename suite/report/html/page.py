@@ -12,7 +12,7 @@ import jinja2
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
-from suite.errors import KbgaBenchError
+from suite.errors import check_file, writing
 from suite.report.html.appearance import appearance
 from suite.report.html.cells import sheet
 from suite.report.html.charts import convergence_chart, ecdf_chart
@@ -46,15 +46,10 @@ def write_report(store: Path, file: Path, *, reference: str | None = None) -> No
     KbgaBenchError
         If the store can't be read, the file can't be written, or no run is of the reference.
     """
-    if file.suffix.lower() not in SUFFIXES:
-        raise KbgaBenchError(f"{file}: a report is {' or '.join(SUFFIXES)}. Name such a file.")
-    if not file.parent.is_dir():
-        raise KbgaBenchError(f"{file}: there is no folder {file.parent}. Make it first.")
+    check_file(file, "reports", SUFFIXES)
     page = render_report(read_evidence(store, reference))
-    try:
+    with writing(file):
         file.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise KbgaBenchError(f"{file}: can't be written ({error.strerror}).") from error
 
 
 def render_report(evidence: Evidence) -> str:

@@ -11,9 +11,8 @@ from suite.errors import KbgaBenchError
 from suite.report.html.appearance import PLANNERS_AT_MOST, Appearance, appearance
 from suite.report.html.drawing import Drawing, draw
 from suite.report.html.evidence import Evidence
-from suite.report.tables.summary import feasible
-from suite.scenes.catalogue import load_scene
-from suite.scenes.scene import scene_fingerprint
+from suite.report.rows import cheapest, feasible
+from suite.scenes.catalogue import scene_as_it_was
 
 SCENES_AT_MOST = 40
 """A page of more is not looked at."""
@@ -107,15 +106,10 @@ def _picture(number: int, name: str, runs: pd.DataFrame, evidence: Evidence) -> 
 
 
 def _drawing(row: "pd.Series[Any]") -> tuple[Drawing | None, str]:
-    source = str(row["scene_source"])
     try:
-        scene = load_scene(source)
-        query = scene.query(row["query"])
+        return draw(*scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])), ""
     except KbgaBenchError as error:
-        return None, f"The scene can't be loaded any more: {error}"
-    if scene_fingerprint(scene, query) != row["scene_hash"]:
-        return None, "The scene has changed since these rows were made, so that it is not drawn."
-    return draw(scene, query), ""
+        return None, f"It can't be drawn: {error}"
 
 
 def _best_paths(runs: pd.DataFrame, drawing: Drawing | None, evidence: Evidence) -> list[BestPath]:
@@ -123,8 +117,7 @@ def _best_paths(runs: pd.DataFrame, drawing: Drawing | None, evidence: Evidence)
     widths = np.linspace(WIDEST, THINNEST, max(len(groups), 2)).round(1)
     found = []
     for width, (planner, group) in zip(widths, groups, strict=False):
-        solved = feasible(group).sort_values("cost", kind="stable")
-        best = solved.iloc[0] if len(solved) else None
+        best = cheapest(group)
         path = None if best is None else evidence.paths.get(best["key"])
         found.append(
             BestPath(
@@ -134,7 +127,7 @@ def _best_paths(runs: pd.DataFrame, drawing: Drawing | None, evidence: Evidence)
                 None if path is None or drawing is None else drawing.outline(path),
                 None if best is None else float(best["cost"]),
                 None if best is None or pd.isna(best["gap"]) else float(best["gap"]),
-                len(solved),
+                len(feasible(group)),
                 len(group),
             )
         )

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.colors import to_hex, to_rgb
 
-from suite.report.figures.overview import NOTHING, colouring
+from suite.report.figures.style import NOTHING, colouring
 from suite.report.html.cells import Sheet
 
 INKS = ("#000000", "#ffffff")

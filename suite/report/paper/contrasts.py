@@ -15,11 +15,15 @@ import pandas as pd
 from suite.paper.reported import (
     KBGA,
     PLAIN_GA,
+    RUNS,
     WITHOUT_CROSSOVER_AND_MUTATION,
     Reported,
     best_reported,
     find,
+    spread_of,
 )
+from suite.report.paper.tables import kinds_of_sides
+from suite.report.rows import feasible
 from suite.report.statistics.agreement import (
     AGREES,
     DIFFERS,
@@ -35,10 +39,7 @@ from suite.report.statistics.generations import clock_columns, cut_off, generati
 from suite.report.statistics.inference import Array
 from suite.report.table import Table
 from suite.report.tables.ablation import CLASSICAL, NOTHING, SPECIALISED, ablated
-from suite.report.tables.summary import feasible
-
-RUNS = 20
-"""Of the paper, in each of its comparisons."""
+from suite.report.words import fixed
 
 VARIATION = 2.58 / 7.81
 """Standard deviation over mean of the paper's times on its unstructured scene: section IV states
@@ -77,7 +78,7 @@ class Pair:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class Contrast:
     """What came of a contrast.
 
     paper, ours, low, high : float; nan if there is none.
@@ -104,7 +105,8 @@ def contrast_table(runs: pd.DataFrame) -> Table | None:
     if not rows:
         return None
     frame = pd.DataFrame(rows)
-    return Table("paper-contrasts", "The paper's contrasts, and ours", frame, NOTE)
+    title = "The paper's contrasts, and ours"
+    return Table("paper-contrasts", title, frame, NOTE, kinds=kinds_of_sides(frame))
 
 
 def _ablations(runs: pd.DataFrame) -> Iterator[dict[str, Any]]:
@@ -155,7 +157,7 @@ def _pair_of_means(scene: str, name: str, quantity: str) -> tuple[Reported, Repo
     return (whole[0], without[0]) if whole and without else None
 
 
-def _cost(pair: Pair) -> Outcome:
+def _cost(pair: Pair) -> Contrast:
     scale = float(pair.runs[0]["optimum"].max()) / 100.0
     papers = best_reported(pair.scene) or np.nan
     paper = tuple(_paper_sample(figure, papers / 100.0) for figure in pair.figures)
@@ -172,10 +174,10 @@ def _cost(pair: Pair) -> Outcome:
     over_all = _of_means(claimed, (paper[0], paper[1]))
     word = outcome.word if outcome.word == over_all.word else NOT_COMPARABLE
     why = f"{lost}; over all, penalties included: {over_all.ours:.1f}"
-    return Outcome(outcome.paper, outcome.ours, outcome.low, outcome.high, word, why)
+    return Contrast(outcome.paper, outcome.ours, outcome.low, outcome.high, word, why)
 
 
-def _generations(pair: Pair) -> Outcome:
+def _generations(pair: Pair) -> Contrast:
     columns = [generations_column(runs) for runs in pair.runs]
     found = [feasible(runs) for runs in pair.runs]
     paper = tuple(_paper_sample(figure, 1.0) for figure in pair.figures)
@@ -192,14 +194,14 @@ def _generations(pair: Pair) -> Outcome:
         if count
     ]
     ends = (outcome.paper, outcome.ours, outcome.low, outcome.high)
-    return Outcome(*ends, NOT_COMPARABLE, "; ".join(reasons))
+    return Contrast(*ends, NOT_COMPARABLE, "; ".join(reasons))
 
 
-def _of_means(values: list[Array], paper: tuple[Sample, Sample]) -> Outcome:
+def _of_means(values: list[Array], paper: tuple[Sample, Sample]) -> Contrast:
     contrast = paper[1].mean - paper[0].mean
     if any(len(each) == 0 for each in values):
         nothing = (float("nan"),) * 3
-        return Outcome(contrast, *nothing, NOT_COMPARABLE, "one side found no path")
+        return Contrast(contrast, *nothing, NOT_COMPARABLE, "one side found no path")
     first, second = (sample_of(each) for each in values)
     # Where the paper tells no spread, ours has to do.
     told = [
@@ -210,7 +212,7 @@ def _of_means(values: list[Array], paper: tuple[Sample, Sample]) -> Outcome:
     low, high = interval_of(first, second)
     ours = second.mean - first.mean
     why = _why(compared, ours, contrast, low, high)
-    return Outcome(contrast, ours, low, high, compared.word, why)
+    return Contrast(contrast, ours, low, high, compared.word, why)
 
 
 def _why(compared: Compared, ours: float, paper: float, low: float, high: float) -> str:
@@ -218,14 +220,13 @@ def _why(compared: Compared, ours: float, paper: float, low: float, high: float)
         return "one run has no spread"
     if compared.word == NOT_COMPARABLE:
         return "too wide to tell"
-    # Rounding may leave a zero with a sign.
-    size = f"{round(ours / paper, 2) + 0.0:.2f} of the paper's"
+    size = f"{fixed(ours / paper)} of the paper's"
     if low <= 0.0 <= high:
         return f"not told from none; {size}"
     return f"same sign; {size}" if ours * paper > 0.0 else "the other sign"
 
 
-def _success(pair: Pair) -> Outcome:
+def _success(pair: Pair) -> Contrast:
     """All against none in the paper."""
     one, other = ((len(feasible(runs)), len(runs)) for runs in pair.runs)
     (whole, n), (without, m) = one, other
@@ -236,10 +237,10 @@ def _success(pair: Pair) -> Outcome:
     sides = ((one, (RUNS, RUNS)), (other, (0, RUNS)))
     like = not any(shares_differ(mine, papers) for mine, papers in sides)
     if shown and like:
-        return Outcome(-100.0, ours, *ends, AGREES, why)
+        return Contrast(-100.0, ours, *ends, AGREES, why)
     if shown or not like:
-        return Outcome(-100.0, ours, *ends, DIFFERS, why if not shown else f"{why}; less")
-    return Outcome(-100.0, ours, *ends, NOT_COMPARABLE, f"{why}: too few runs")
+        return Contrast(-100.0, ours, *ends, DIFFERS, why if not shown else f"{why}; less")
+    return Contrast(-100.0, ours, *ends, NOT_COMPARABLE, f"{why}: too few runs")
 
 
 def _times(runs: pd.DataFrame) -> Iterator[dict[str, Any]]:
@@ -277,12 +278,12 @@ def _answering(figure: Reported, runs: pd.DataFrame) -> pd.DataFrame:
     return runs[(runs["scene"] == figure.scene) & runs["variant"].isin(names)]
 
 
-def _ratio(pair: Pair) -> Outcome:
+def _ratio(pair: Pair) -> Contrast:
     paper = pair.figures[1].value / pair.figures[0].value
     quiet = [feasible(runs[runs["contended"] != True]) for runs in pair.runs]  # noqa: E712
     nothing = (float("nan"),) * 3
     if any(len(runs) < 2 for runs in quiet):
-        return Outcome(paper, *nothing, NOT_COMPARABLE, "too few runs that were not contended")
+        return Contrast(paper, *nothing, NOT_COMPARABLE, "too few runs that were not contended")
     first, second = (_log_sample(_numbers(runs[clock_columns(runs)[1]])) for runs in quiet)
     told = tuple(Sample(float(np.log(f.value)), VARIATION, f.runs or RUNS) for f in pair.figures)
     compared = compare_contrasts((first, second), (told[0], told[1]))
@@ -291,7 +292,7 @@ def _ratio(pair: Pair) -> Outcome:
     why = _why(compared, ours, float(np.log(paper)), low, high)
     why = why.replace("of the paper's", "of the paper's, as logarithms")
     ours, low, high = (float(np.exp(value)) for value in (ours, low, high))
-    return Outcome(paper, ours, low, high, compared.word, why)
+    return Contrast(paper, ours, low, high, compared.word, why)
 
 
 def _log_sample(times: Array) -> Sample:
@@ -301,11 +302,8 @@ def _log_sample(times: Array) -> Sample:
 
 
 def _paper_sample(figure: Reported, scale: float) -> Sample:
-    spreads = find(
-        source=figure.source, scene=figure.scene, planner=figure.planner,
-        quantity=figure.quantity, statistic="sd",
-    )  # fmt: skip
-    sd = spreads[0].value / scale if spreads else float("nan")
+    spread = spread_of(figure)
+    sd = float("nan") if spread is None else spread / scale
     return Sample(figure.value / scale, sd, figure.runs or RUNS)
 
 
@@ -313,7 +311,7 @@ def _numbers(column: "pd.Series[Any]") -> Array:
     return column.dropna().to_numpy(dtype=np.float64)
 
 
-def _as_row(pair: Pair, measure: str, outcome: Outcome, planner: str) -> dict[str, Any]:
+def _as_row(pair: Pair, measure: str, outcome: Contrast, planner: str) -> dict[str, Any]:
     is_papers = planner == KBGA
     return {
         "scene": pair.scene,

@@ -18,14 +18,10 @@ from numpy.typing import NDArray
 
 from suite.paper.reported import KBGA, PLAIN_GA, WITHOUT_CROSSOVER_AND_MUTATION
 from suite.planner import Snapshot
-from suite.report.figures.scene import (
-    LINES,
-    POPULATION,
-    draw_ends,
-    draw_obstacles,
-    draw_room,
-)
-from suite.report.tables.summary import feasible
+from suite.report.figures.scene import draw_ends, draw_obstacles, draw_room
+from suite.report.figures.style import LABEL, LINES, POPULATION, SMALLEST, height_for, label_metres
+from suite.report.rows import cheapest, feasible
+from suite.scenes.homotopy import Word, routes_of
 from suite.scenes.scene import Query, Scene
 
 EVOLUTIONS = {"unstructured": 6, "maze": 7, "zigzag": 8, "double_u": 9}
@@ -107,18 +103,18 @@ def plot_evolution(
     figure, grid = _panels(scene, query, 4)
     first = generations[0]
     grid[0].add_collection(LineCollection(first.paths, colors=POPULATION, linewidths=0.6))
-    grid[0].set_title(f"(a) first population, {len(first.paths)} paths", fontsize=9)
+    grid[0].set_title(f"(a) first population, {len(first.paths)} paths", fontsize=LABEL)
     _draw(grid[1], least_inside(scene, first.paths))
-    grid[1].set_title("(b) the one of it least in obstacles", fontsize=9)
+    grid[1].set_title("(b) the one of it least in obstacles", fontsize=LABEL)
     lines = [
         grid[2].plot(*path.T, color=colour, linestyle=style, linewidth=1.6, label=f"{number}")[0]
         for (number, path), (colour, style) in zip(_milestones(generations), LINES, strict=False)
     ]
-    grid[2].set_title("(c) best paths of generations", fontsize=9)
+    grid[2].set_title("(c) best paths of generations", fontsize=LABEL)
     if lines:
-        grid[2].legend(handles=lines, fontsize=7, framealpha=0.85, handlelength=2.6)
+        grid[2].legend(handles=lines, fontsize=SMALLEST, framealpha=0.85, handlelength=2.6)
     _draw(grid[3], last)
-    grid[3].set_title(f"(d) final path: {cost:.2f} m", fontsize=9)
+    grid[3].set_title(f"(d) final path: {cost:.2f} m", fontsize=LABEL)
     return figure
 
 
@@ -136,7 +132,7 @@ def plot_routes(
     figure, grid = _panels(scene, query, len(best))
     for axes, (name, (path, cost)) in zip(grid, best.items(), strict=False):
         _draw(axes, path)
-        axes.set_title(f"{name}:\n{cost:.2f} m", fontsize=9)
+        axes.set_title(f"{name}:\n{cost:.2f} m", fontsize=LABEL)
     return figure
 
 
@@ -145,7 +141,7 @@ def best_of_routes(
 ) -> dict[str, tuple[NDArray[np.float64], float]]:
     """The shortest path of each route that runs took, the shortest route first.
 
-    Two paths are of one route if they pass every obstacle on the same side.
+    Two paths are of one route if one can be deformed into the other without passing an obstacle.
 
     Parameters
     ----------
@@ -161,42 +157,15 @@ def best_of_routes(
     dict
         From "(a), 17 of 20 runs" to path and length.
     """
-    places = np.array([o.polygon.representative_point().coords[0] for o in scene.obstacles])
-    routes: dict[tuple[int, ...], list[tuple[float, str]]] = {}
-    for key, cost in zip(runs["key"], runs["cost"], strict=True):
-        routes.setdefault(sides(paths[key], places), []).append((float(cost), str(key)))
+    words = routes_of(scene, [paths[key] for key in runs["key"]])
+    routes: dict[Word, list[tuple[float, str]]] = {}
+    for word, key, cost in zip(words, runs["key"], runs["cost"], strict=True):
+        routes.setdefault(word, []).append((float(cost), str(key)))
     ordered = sorted(routes.values(), key=min)[:most]
     return {
         f"({letter}), {len(members)} of {len(runs)} runs": (paths[min(members)[1]], min(members)[0])
         for letter, members in zip("abcdefgh", ordered, strict=False)
     }
-
-
-def sides(path: NDArray[np.float64], places: NDArray[np.float64]) -> tuple[int, ...]:
-    """How often a path crosses the ray upwards from each place, to the right less to the left.
-
-    Paths with the same ends that agree in it enclose none of the places between them.
-
-    Parameters
-    ----------
-    path : (n, 2) float64, metres
-    places : (m, 2) float64, metres
-
-    Examples
-    --------
-    >>> above, below = np.array([[0, 0], [2, 5], [4, 0]]), np.array([[0, 0], [4, 0]])
-    >>> place = np.array([[2, 1]])
-    >>> sides(above, place), sides(below, place)
-    ((1,), (0,))
-    """
-    (x, y), (u, v) = path[:-1].T[:, :, None], path[1:].T[:, :, None]
-    right = (x <= places[:, 0]) & (places[:, 0] < u)
-    left = (u <= places[:, 0]) & (places[:, 0] < x)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        height = y + (places[:, 0] - x) / (u - x) * (v - y)
-    is_above = height > places[:, 1]
-    crossed = (right & is_above).sum(axis=0) - (left & is_above).sum(axis=0)
-    return tuple(crossed.tolist())
 
 
 def least_inside(scene: Scene, paths: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
@@ -225,20 +194,18 @@ def _best_of(
 ) -> dict[str, tuple[NDArray[np.float64], float]]:
     best = {}
     for variant in variants:
-        solved = feasible(runs[runs["variant"] == variant])
-        if len(solved):
-            row = solved.sort_values("cost", kind="stable").iloc[0]
-            total = int((runs["variant"] == variant).sum())
-            name = f"{variant.removeprefix('kbga-')}, best of {total}"
+        mine = runs[runs["variant"] == variant]
+        row = cheapest(mine)
+        if row is not None:
+            name = f"{variant.removeprefix('kbga-')}, best of {len(mine)}"
             best[name] = (paths[row["key"]], float(row["cost"]))
     return best
 
 
 def _panels(scene: Scene, query: Query, count: int) -> tuple[Figure, list[Axes]]:
-    xmin, ymin, xmax, ymax = scene.bounds
     columns = min(count, 2)
     rows = -(-count // columns)
-    height = PANEL * min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0) + HEADS
+    height = height_for(scene, PANEL) + HEADS
     figure, grid = plt.subplots(
         rows, columns, figsize=(PANEL * columns + 0.4, height * rows), layout="constrained",
         sharex=True, sharey=True, squeeze=False,
@@ -249,10 +216,7 @@ def _panels(scene: Scene, query: Query, count: int) -> tuple[Figure, list[Axes]]
         draw_room(axes, scene)
         draw_obstacles(axes, scene, 0.5)
         draw_ends(axes, query, 0.6)
-        axes.tick_params(labelsize=7)
-        axes.set_xlabel("x (m)", fontsize=8)
-        axes.set_ylabel("y (m)", fontsize=8)
-        axes.label_outer(remove_inner_ticks=True)
+        label_metres(axes)
     return figure, list(grid.flat[:count])
 
 

@@ -6,9 +6,9 @@ from typing import Any
 import pandas as pd
 
 from suite.paper.reported import KBGA, KBGA_PLUS, PLAIN_GA, Reported, best_reported, find, reported
+from suite.report.rows import feasible
 from suite.report.statistics.generations import COUNTED, clock_columns, cut_off, generations_column
-from suite.report.table import Table
-from suite.report.tables.summary import feasible
+from suite.report.table import Kind, Table
 
 TIME_NOTE = (
     "The paper's times are from a Pentium III at 933 MHz and can't be compared as such: only their "
@@ -203,14 +203,10 @@ def paper_tables(runs: pd.DataFrame) -> list[Table]:
     """The paper's comparisons that these runs can answer, with titles and notes."""
     tables = []
     if not _of(runs, TABLE_1_SCENE, KBGA).empty and not _of(runs, TABLE_1_SCENE, PLAIN_GA).empty:
-        tables.append(
-            Table(
-                "paper-table-1",
-                "Paper's Table 1: zigzag, KBGA with and without its specialised operators",
-                paper_table_1(runs),
-                f"{GENERATIONS_NOTE} {COST_NOTE} {SCENE_NOTE} {TIME_NOTE}{_plus_note(runs)}",
-            )
-        )
+        frame = paper_table_1(runs)
+        title = "Paper's Table 1: zigzag, KBGA with and without its specialised operators"
+        note = f"{GENERATIONS_NOTE} {COST_NOTE} {SCENE_NOTE} {TIME_NOTE}{_plus_note(runs)}"
+        tables.append(Table("paper-table-1", title, frame, note, kinds=kinds_of_sides(frame)))
     static = paper_static(runs)
     if not static.empty:
         title = "Paper's section III: KBGA in static environments"
@@ -220,8 +216,14 @@ def paper_tables(runs: pd.DataFrame) -> list[Table]:
             f"{GENERATIONS_NOTE} Where the paper states a figure twice, both stand here. Means are "
             f"over the feasible runs. {SCENE_NOTE} {TIME_NOTE}{_plus_note(runs)}"
         )
-        tables.append(Table("paper-static", title, static, note))
+        tables.append(Table("paper-static", title, static, note, kinds=kinds_of_sides(static)))
     return tables
+
+
+def kinds_of_sides(frame: pd.DataFrame) -> dict[str, Kind]:
+    """Kinds of a table's columns of several quantities, the paper's and ours, named by the side."""
+    sides = {"paper": Kind.PRINTED, "ours": Kind.MIXED}
+    return {c: kind for c in map(str, frame) for side, kind in sides.items() if c.startswith(side)}
 
 
 def _of(runs: pd.DataFrame, scene: str, variant: str) -> pd.DataFrame:

@@ -13,7 +13,18 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from suite.paper.reported import KBGA, KBGA_PLUS, PLAIN_GA, Reported, best_reported, reported
+from suite.paper.reported import (
+    KBGA,
+    KBGA_PLUS,
+    PLAIN_GA,
+    RUNS,
+    Reported,
+    best_reported,
+    reported,
+    spread_of,
+)
+from suite.report.paper.tables import kinds_of_sides
+from suite.report.rows import feasible, settings_of
 from suite.report.statistics.agreement import (
     AGREES,
     DIFFERS,
@@ -30,17 +41,13 @@ from suite.report.statistics.agreement import (
 from suite.report.statistics.generations import clock_columns, cut_off, generations_column
 from suite.report.statistics.inference import Array
 from suite.report.table import Table
-from suite.report.tables.compared import settings_of
 from suite.report.tables.simulated import UNKNOWN, reactions
-from suite.report.tables.summary import feasible
+from suite.report.words import fixed
 
 BETTER, WORSE = "better", "worse"
 SETTING, NO_DATA = "setting", "no data"
 
 OTHER_MACHINE = "another machine; ratios are among the contrasts"
-RUNS = 20
-"""Of the paper, where it speaks of none: as for its other figures."""
-
 NOTE = (
     "ours: over the runs that found a path; {plus}setting: what we set, which is no result and is "
     "not counted. Our scenes are drawn so that their optimum is the paper's best cost, so that "
@@ -137,7 +144,8 @@ def verdict_table(rows: Rows) -> Table | None:
     if not has_plus:
         frame = frame.drop(columns=f"ours, {KBGA_PLUS}")
     note = f"{_counted(frame, len(found))} {NOTE.format(plus=PLUS_NOTE if has_plus else '')}"
-    return Table("paper-figures", "Every figure of the paper, and ours", frame, note)
+    title = "Every figure of the paper, and ours"
+    return Table("paper-figures", title, frame, note, kinds=kinds_of_sides(frame))
 
 
 def _counted(frame: pd.DataFrame, of: int) -> str:
@@ -263,8 +271,8 @@ def _is_within(value: float, low: float, high: float) -> bool:
 def _range(figure: Reported, papers: float, low: float, high: float, runs: int) -> str:
     """Where one value of the paper lies beside the range of ours, in the unit of the comparison."""
     if figure.quantity == "cost":
-        papers, low, high = (round(100.0 * value, 2) + 0.0 for value in (papers, low, high))
-        return f"excess {papers:.2f} %, of our {runs} runs {low:.2f} to {high:.2f} %"
+        percent, least, most = (fixed(100.0 * value) for value in (papers, low, high))
+        return f"excess {percent} %, of our {runs} runs {least} to {most} %"
     return f"our {runs} runs: {low:.4g} to {high:.4g}"
 
 
@@ -374,7 +382,7 @@ def _beyond(figure: Reported, value: Any, scale: float) -> Any:
 def _paper_sample(figure: Reported, ours: Sample) -> Sample:
     """The paper's runs; ours lend their spread where it tells none."""
     scale = _paper_scale(figure)
-    spread = _reported_spread(figure)
+    spread = spread_of(figure)
     sd = ours.sd if spread is None else spread / scale
     return Sample(float(_beyond(figure, figure.value, scale)), sd, figure.runs or RUNS)
 
@@ -394,16 +402,14 @@ def _by_sign(figure: Reported, *, is_less: bool) -> str:
 
 def _apart(figure: Reported, ours: Sample, paper: Sample, compared: Compared) -> str:
     """How far two means are apart, in the unit in which they are compared."""
-    lent = "" if _reported_spread(figure) is not None else "; no SD stated: ours for both"
+    lent = "" if spread_of(figure) is not None else "; no SD stated: ours for both"
     if np.isnan(compared.low):
         return "one run has no spread"
     if figure.quantity == "cost":
-        # Rounding may leave a zero with a sign.
         mine, papers, low, high = (
-            round(100.0 * value, 2) + 0.0
-            for value in (ours.mean, paper.mean, compared.low, compared.high)
+            fixed(100.0 * value) for value in (ours.mean, paper.mean, compared.low, compared.high)
         )
-        apart = f"excess {mine:.2f} %, paper's {papers:.2f} %, apart by {low:.2f} to {high:.2f}"
+        apart = f"excess {mine} %, paper's {papers} %, apart by {low} to {high}"
     else:
         apart = f"apart by {compared.low:.1f} to {compared.high:.1f}"
     few = "too wide to tell: " if compared.word == NOT_COMPARABLE else ""
@@ -471,17 +477,6 @@ def _reaction(figure: Reported, rows: Rows) -> Verdict:
     change = news["number"].min() if "obstacle A" in figure.note else news["number"].max()
     ours = float(news.loc[news["number"] == change, "latency_s"].median())
     return Verdict(ours, NOT_COMPARABLE, "our median; another machine")
-
-
-def _reported_spread(figure: Reported) -> float | None:
-    """The standard deviation that the paper states at the same place, if it does."""
-    for other in reported():
-        same = (other.source, other.scene, other.planner, other.quantity, dict(other.setting))
-        if other.statistic == "sd" and same == (
-            figure.source, figure.scene, figure.planner, figure.quantity, dict(figure.setting),
-        ):  # fmt: skip
-            return other.value
-    return None
 
 
 def _as_row(figure: Reported, given: Verdict, plus: float) -> dict[str, Any]:

@@ -12,11 +12,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from suite.report.rows import feasible, places
 from suite.report.statistics.clock import WALL, by_the_clock
-from suite.report.tables.compared import places
-from suite.report.tables.summary import feasible
-
-Array = NDArray[np.float64]
+from suite.report.statistics.inference import Array
 
 CLOCKS = {"wall_s": "wall_s", "cpu_s": "cpu_s", "generation": "generations", "checks": "checks"}
 """Clocks of the events, and the columns of the runs that hold what they show at the end."""

@@ -1,6 +1,6 @@
 """What a busy machine has spoilt: the one place that decides which rows the clock may speak of.
 
-A run is contended if it had no core for itself (see :mod:`suite.harness.contention`). Its times are
+A run is contended if it had no core for itself (see :mod:`suite.referee.clock`). Its times are
 then as much the machine's as the planner's: no table, rank or picture counts them. If wall time
 ended it, or moved its world on, the outcome is the machine's too, and nothing of the row counts.
 Counts and CPU time stay: others on the machine hardly change them.
@@ -11,6 +11,8 @@ import json
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+
+from suite.report.words import counted
 
 TIMES = ("wall_s", "time_to_best_s")
 """Columns of wall times."""
@@ -77,16 +79,11 @@ def dropped_note(runs: pd.DataFrame) -> str:
         return ""
     whose = [f"{name} {count}" for name, count in dropped.items()]
     named = ", ".join(whose[:NAMES_AT_MOST]) + (" and others" * (len(whose) > NAMES_AT_MOST))
-    were = "1 row" if dropped.sum() == 1 else f"{dropped.sum()} rows"
+    were = counted(int(dropped.sum()), "row")
     return (
         f"Left out: {were} of runs that the clock ended and that had no core for themselves "
         f"({named})."
     )
-
-
-def joined(*sentences: str) -> str:
-    """A note of several sentences, of which some may be empty."""
-    return " ".join(filter(None, sentences))
 
 
 def _is_charged(runs: pd.DataFrame) -> NDArray[np.bool_]:

@@ -7,7 +7,7 @@ path again, but hardly by the same number of checks, in every scene and every ru
 
 import pandas as pd
 
-from suite.report.tables.summary import feasible
+from suite.report.rows import feasible
 
 OUTCOME = [
     "status", "cost", "claimed_cost", "clearance", "segments", "turning", "generations",

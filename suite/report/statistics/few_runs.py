@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from itertools import count
 
 from suite.report.statistics.inference import CONSTANT, LEVEL, smallest_p
+from suite.report.words import counted
 
 PAIR = tuple[int, int]
 """Numbers of runs of the two sides of a comparison; one of them may be a constant."""
@@ -29,7 +30,7 @@ def too_few(sizes: Sequence[PAIR]) -> str:
     least = min(len(sizes) * smallest_p(*clearest), 1.0)
     if least < 1.0 - LEVEL:
         return ""
-    comparisons = f"{len(sizes)} comparison{'s' if len(sizes) != 1 else ''}"
+    comparisons = counted(len(sizes), "comparison")
     return (
         f"Too few runs: with {_side(clearest[0])} against {_side(clearest[1])} and {comparisons}, "
         "the smallest p "

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from suite.report.tables.compared import settings_of
+from suite.report.rows import settings_of
 
 COUNTED = {"best": "generation_of_best", "stop": "generations"}
 """Values of the setting, and the columns of the runs."""

@@ -15,20 +15,20 @@ from suite.paper.reported import (
     WITHOUT_CROSSOVER_AND_MUTATION,
     find,
 )
+from suite.report.rows import feasible, places, settings_of
 from suite.report.statistics.generations import cut_off
-from suite.report.table import Table
+from suite.report.table import Kind, Table
 from suite.report.tables.compared import (
+    COLUMNS,
+    KINDS,
     NOTE,
     PENALTIES_NOTE,
     RATIO_NOTE,
-    at_a_glance,
     compare,
     families,
-    places,
-    settings_of,
 )
+from suite.report.tables.glance import at_a_glance
 from suite.report.tables.studies import GLANCE_NOTE
-from suite.report.tables.summary import feasible
 
 OPERATORS = ("crossover", "mutation", "repair", "deletion", "improvement")
 NOTHING = "nothing"
@@ -205,7 +205,8 @@ def ablation_tables(runs: pd.DataFrame, cost_note: str) -> list[Table]:
             f"Verdicts stand in the table of contrasts. {cost_note}"
         )
         title = "Paper's section IV: what the operators contribute"
-        tables.append(Table("paper-ablation", title, beside, note))
+        kinds = {"paper cost mean": Kind.PRINTED, "paper gen mean": Kind.PRINTED}
+        tables.append(Table("paper-ablation", title, beside, note, kinds=kinds))
     title = "KBGA without some of its operators"
     seen = frame.rename(columns={"value": "switched off", "family": "settings"})
     has_plain_ga = PLAIN_GA in set(frame["variant"])
@@ -218,12 +219,8 @@ def ablation_tables(runs: pd.DataFrame, cost_note: str) -> list[Table]:
             GLANCE_NOTE + plain,
         )
     )
-    columns = [
-        "scene", "settings", "switched off", "runs", "feasible", "cost mean", "cost SD",
-        "gap mean (%)", "cost with penalties mean", "gen to best mean", "checks mean",
-        "cpu to best mean (ms)", "cpu total median (ms)", "ratio to best", "ratio total",
-    ]  # fmt: skip
+    columns = ["scene", "settings", "switched off", "runs", "feasible", *COLUMNS]
     ratios = RATIO_NOTE.format(reference="the same settings with nothing switched off")
     note = f"{NOTE} {PENALTIES_NOTE} {ratios}{plain}"
-    tables.append(Table("study-ablation-rows", f"{title}: all measures", seen[columns], note))
-    return tables
+    rows = f"{title}: all measures"
+    return [*tables, Table("study-ablation-rows", rows, seen[columns], note, kinds=KINDS)]

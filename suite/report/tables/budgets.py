@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from suite.report.statistics.anytime import Array, Steps, gap_at, on_clock
-from suite.report.statistics.clock import joined, untimed_note
+from suite.report.statistics.anytime import Steps, gap_at, on_clock
+from suite.report.statistics.clock import untimed_note
+from suite.report.statistics.inference import Array
 from suite.report.table import Table
-from suite.report.tables.compared import SIDE_BY_SIDE, at_a_glance
+from suite.report.tables.glance import SIDE_BY_SIDE, at_a_glance, planners_together
 from suite.report.tables.targets import medians
+from suite.report.words import fixed, joined, of_some
 
 BUDGETS_S = (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0)
 """Wall time, seconds."""
@@ -84,23 +86,15 @@ def budget_tables(steps: Steps) -> list[Table]:
     rows = Table("fixed-budget-rows", title, frame, told, infinite="no path", detail=True)
     if frame["scene"].nunique() > SIDE_BY_SIDE:
         return [rows]
-    glanced = at_a_glance(_with_budget_names(frame), ["planner", "after"], _cell)
+    named = frame.assign(after=[f"{budget:g} ms" for budget in frame["budget (ms)"]])
+    ordered = planners_together(named, "budget (ms)")
+    glanced = at_a_glance(ordered, ["planner", "after"], _cell)
     note = f"k of n: how many runs had a path. {told}"
     title = "Median gap (%) after a fixed wall time"
     return [Table("fixed-budget", title, glanced, note), rows]
 
 
-def _with_budget_names(frame: pd.DataFrame) -> pd.DataFrame:
-    """With a column for the budget as it is printed; a planner's rows together."""
-    named = frame.assign(after=[f"{budget:g} ms" for budget in frame["budget (ms)"]])
-    order = {name: i for i, name in enumerate(dict.fromkeys(named["planner"]))}
-    keys = [named["planner"].map(order), named["budget (ms)"]]
-    return named.iloc[np.lexsort(keys[::-1])]
-
-
 def _cell(row: Mapping[Any, Any]) -> str:
-    share = f"{row['with path']} of {row['runs']}"
     if np.isinf(row["gap median (%)"]):
-        return f"no path ({share})"
-    gap = f"{row['gap median (%)']:.2f}"
-    return gap if row["with path"] == row["runs"] else f"{gap} ({share})"
+        return f"no path ({row['with path']} of {row['runs']})"
+    return of_some(fixed(row["gap median (%)"]), row["with path"], row["runs"])

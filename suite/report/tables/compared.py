@@ -1,12 +1,13 @@
 """Runs of variants compared with those of one of them: the machinery of all studies."""
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import pandas as pd
 
-from suite.report.tables.summary import feasible
+from suite.report.rows import BUDGET, feasible
+from suite.report.table import Kind
 
 NOTE = (
     "feasible: runs with a path that the referee accepted. cost, gap, gen to best and cpu to "
@@ -18,17 +19,12 @@ PENALTIES_NOTE = (
 )
 RATIO_NOTE = "ratio: of the cpu time to that of {reference}."
 
-SIDE_BY_SIDE = 12
-"""Scenes that a table has room for: of more, there are only the rows."""
-
-_BUDGET = ["budget_wall_s", "budget_generations", "budget_checks", "budget_cpu_s"]
-
-
-def settings_of(runs: pd.DataFrame, column: str = "settings") -> "pd.Series[Any]":
-    """The settings of each run, or of its world, as a dict."""
-    # Few different texts stand in many rows.
-    parsed = {text: json.loads(text) for text in runs[column].unique()}
-    return runs[column].map(parsed)
+COLUMNS = [
+    "cost mean", "cost SD", "gap mean (%)", "cost with penalties mean", "gen to best mean",
+    "checks mean", "cpu to best mean (ms)", "cpu total median (ms)", "ratio to best", "ratio total",
+]  # fmt: skip
+KINDS = {"gen to best mean": Kind.COUNT, "checks mean": Kind.COUNT}
+"""Of :func:`compare`: what a table of all measures shows, and what these are."""
 
 
 def families(
@@ -57,7 +53,7 @@ def families(
     keys = [
         (planner, texts[id(values)], budget)
         for planner, values, budget in zip(
-            runs["planner"], settings, map(str, runs[_BUDGET].to_numpy().tolist()), strict=True
+            runs["planner"], settings, map(str, runs[BUDGET].to_numpy().tolist()), strict=True
         )
     ]
     members: dict[tuple[str, str, str], Mapping[str, Any]] = {}
@@ -89,12 +85,6 @@ def _family_name(
     if len({s[2] for s in siblings}) > 1:
         differing.append(f"budget {key[2]}")
     return ", ".join([key[0], *differing])
-
-
-def places(runs: pd.DataFrame) -> "pd.Series[str]":
-    """Where each run took place: its scene, and its query if the scene has several."""
-    several = runs.groupby("scene")["query"].transform("nunique") > 1
-    return runs["scene"].where(~several, runs["scene"] + "/" + runs["query"])
 
 
 def compare(
@@ -157,52 +147,6 @@ def _of_reference(
         return pd.Series(there.dropna().iloc[:1].mean(), index=frame.index)
     # The first: a store may hold the reference under two names.
     return there.groupby([frame[name] for name in within]).transform("first")
-
-
-def at_a_glance(
-    frame: pd.DataFrame,
-    rows: Sequence[str],
-    cell: Callable[[Mapping[Any, Any]], str] | None = None,
-) -> pd.DataFrame:
-    """A comparison with the scenes side by side.
-
-    Parameters
-    ----------
-    frame : DataFrame
-        Of :func:`compare`, or any with a column ``scene``.
-    rows : sequence of str
-        Its columns that name a row here.
-    cell : callable, optional
-        What to write of a row of the frame; by default its mean gap, see :func:`glance`.
-
-    Returns
-    -------
-    DataFrame
-        Cells such as ``0.24``, ``81.28 (19 of 20)`` where some runs found no path, and ``0 of 20``
-        where none did.
-    """
-    places = list(dict.fromkeys(frame["scene"]))
-    lines: dict[tuple[Any, ...], dict[str, str]] = {}
-    for row in frame.to_dict("records"):
-        line = lines.setdefault(tuple(row[name] for name in rows), {})
-        line.setdefault(str(row["scene"]), (cell or glance)(row))
-    return pd.DataFrame(
-        [
-            dict(zip(rows, name, strict=True)) | {place: line.get(place, "") for place in places}
-            for name, line in lines.items()
-        ],
-        columns=[*rows, *places],
-    )
-
-
-def glance(row: Mapping[Any, Any]) -> str:
-    """A row's mean gap, and how many of its runs it is over if not all."""
-    runs, found = row["runs"], row["feasible"]
-    if found == 0:
-        return f"0 of {runs}"
-    # Rounding may leave a zero with a sign.
-    gap = f"{round(row['gap mean (%)'], 2) + 0.0:.2f}"
-    return gap if found == runs else f"{gap} ({found} of {runs})"
 
 
 def whole_where_whole(values: "pd.Series[float]") -> "pd.Series[Any]":

@@ -10,9 +10,8 @@ from typing import Any
 import pandas as pd
 
 from suite.paper.reported import KBGA, KBGA_PLUS
-from suite.report.table import Table
-from suite.report.tables.compared import settings_of
-from suite.report.tables.summary import feasible
+from suite.report.rows import feasible, settings_of
+from suite.report.table import Kind, Table
 
 NOTE = (
     "One setting at a time: in the upper rows KBGA takes it from KBGA-plus, in the lower ones "
@@ -36,7 +35,7 @@ def difference_tables(runs: pd.DataFrame) -> list[Table]:
     if frame.empty:
         return []
     title = "What separates kbga from kbga-plus, and what each difference brings"
-    return [Table("differences", title, frame, NOTE)]
+    return [Table("differences", title, frame, NOTE, kinds={"checks mean": Kind.COUNT})]
 
 
 def differences(runs: pd.DataFrame) -> pd.DataFrame:

@@ -15,18 +15,20 @@ import pandas as pd
 from scipy import stats
 
 from suite.planner import PlanStatus
-from suite.report.statistics.anytime import Array, Steps, final_gaps, first_within
+from suite.report.statistics.anytime import Steps, final_gaps, first_within
 from suite.report.statistics.clock import by_the_clock
 from suite.report.statistics.inference import (
     LEVEL,
+    Array,
     critical_difference,
     friedman,
     holm,
     nemenyi,
     signed_rank,
 )
-from suite.report.table import Table
+from suite.report.table import Kind, Table
 from suite.report.tables.targets import medians
+from suite.report.words import counted
 
 TARGET = 0.01
 """Gap to the optimum, for the ranking by time."""
@@ -211,11 +213,12 @@ def ranking_tables(steps: Steps, reference: str | None = None) -> list[Table]:
     one = reference or (REFERENCE if REFERENCE in names else str(found[0].mean.idxmin()))
     frame = pd.concat([_columns(ranking, one) for ranking in found], axis=1)
     frame = frame.sort_values(found[0].name, kind="stable").rename_axis("planner").reset_index()
-    title = f"Mean ranks over {_scenes(len(found[0].ranks))}"
+    kinds = {name: Kind.P_VALUE for name in map(str, frame) if name.endswith(" p")}  # see _columns
+    title = f"Mean ranks over {counted(len(found[0].ranks), 'scene')}"
     note = " ".join([NOTE, TEST_NOTE.format(one=one), *(_verdict(r, one) for r in found)])
     detailed = scores.assign(**{r.name: _of_rows(scores, r.ranks) for r in found})
     return [
-        Table("ranking", title, frame, note),
+        Table("ranking", title, frame, note, kinds=kinds),
         Table("ranking-rows", "Ranks on each scene", detailed, NOTE, "never", detail=True),
     ]
 
@@ -249,7 +252,7 @@ def _verdict(ranking: Ranking, one: str) -> str:
     """What the tests say of the mean ranks, and for how much so many scenes speak."""
     statistic, p_value = friedman(ranking.ranks.to_numpy())
     tasks, planners = ranking.ranks.shape
-    scenes = _scenes(tasks)
+    scenes = counted(tasks, "scene")
     if np.isnan(p_value):
         return f"{ranking.name}, {scenes}: too few ranks for a test."
     best = str(ranking.mean.idxmin())
@@ -289,10 +292,6 @@ def _these(names: list[str], others: list[str]) -> str:
         untold = "the other" if len(rest) == 1 else f"the {len(rest)} others"
         return f"tells {', '.join(names)}, and not {untold}"
     return f"tells all {len(others)}" if not rest else f"does not tell {', '.join(rest)}"
-
-
-def _scenes(count: int) -> str:
-    return f"{count} scene{'s' if count != 1 else ''}"
 
 
 def p_text(p_value: float) -> str:

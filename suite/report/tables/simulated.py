@@ -10,11 +10,11 @@ from typing import Any
 import pandas as pd
 
 from suite.paper.reported import KBGA, find
-from suite.report.statistics.clock import by_the_clock, joined, untimed_note
-from suite.report.table import Table
-from suite.report.tables.summary import feasible, spread
-
-GROUP = ["scene", "query", "world", "variant"]
+from suite.report.rows import NAME, feasible
+from suite.report.statistics.clock import by_the_clock, untimed_note
+from suite.report.table import Kind, Table
+from suite.report.tables.summary import spread
+from suite.report.words import joined
 
 SIMULATION_NOTE = (
     "unhurt: runs in which the robot came to the goal and no obstacle ever hit it, judged in "
@@ -55,11 +55,6 @@ UNCHANGED_M = 0.01
 """A path that stays may still be polished by so much, metres."""
 
 
-def is_simulated(runs: pd.DataFrame) -> "pd.Series[Any]":
-    """Which rows are of simulated runs."""
-    return runs["world"].notna()
-
-
 def simulated_tables(
     runs: pd.DataFrame, simulations: pd.DataFrame, replans: pd.DataFrame
 ) -> list[Table]:
@@ -76,17 +71,24 @@ def simulated_tables(
     if runs.empty:
         return []
     fared = runs.merge(simulations, on="key", how="left", validate="one_to_one")
-    asked = runs[["key", "world_settings", "contended", *GROUP]].merge(replans, on="key")
+    asked = runs[["key", "world_settings", "contended", *NAME]].merge(replans, on="key")
     note = joined(REPLANNING_NOTE, untimed_note(runs))
     tables = [
         Table("simulations", "How the robots fared", how_they_fared(fared), SIMULATION_NOTE),
-        Table("replanning", "How the planners answered", how_they_answered(asked), note),
+        Table(
+            "replanning",
+            "How the planners answered",
+            how_they_answered(asked),
+            note,
+            kinds={"gen per replan": Kind.COUNT},
+        ),
     ]
     timed = asked["latency_s"].where(by_the_clock(asked))
     ours = paper_dynamic(fared, asked.assign(latency_s=timed))
     if not ours.empty:
         title = "The paper's dynamic environments (sections III-D and III-E)"
-        tables.append(Table("paper-dynamic", title, ours, PAPER_NOTE))
+        kinds = {"paper reaction (s)": Kind.PRINTED, "ours reaction (s)": Kind.MIXED}
+        tables.append(Table("paper-dynamic", title, ours, PAPER_NOTE, kinds=kinds))
     return tables
 
 
@@ -99,7 +101,7 @@ def how_they_fared(runs: pd.DataFrame) -> pd.DataFrame:
         Simulated runs, with the columns of :func:`suite.store.read.read_simulations`.
     """
     rows = []
-    for name, group in runs.groupby(GROUP, sort=False):
+    for name, group in runs.groupby(NAME, sort=False):
         good = feasible(group)
         rows.append(
             {
@@ -124,10 +126,10 @@ def how_they_answered(replans: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     replans : DataFrame
-        Joined with the columns GROUP of their runs.
+        Joined with the columns NAME of their runs.
     """
     rows = []
-    for name, group in replans.groupby(GROUP, sort=False):
+    for name, group in replans.groupby(NAME, sort=False):
         latency = 1e3 * group.loc[by_the_clock(group), "latency_s"].dropna()
         gaps = 100.0 * (group["cost"] / group["optimum"] - 1.0).dropna()
         missed = group["optimum"].notna() & group["cost"].isna() & group["latency_s"].notna()

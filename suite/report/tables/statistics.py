@@ -14,11 +14,12 @@ import numpy as np
 import pandas as pd
 
 from suite.errors import KbgaBenchError
-from suite.report.statistics.anytime import Array, Steps, final_gaps
+from suite.report.statistics.anytime import Steps, final_gaps
 from suite.report.statistics.deterministic import deterministic
 from suite.report.statistics.few_runs import too_few
 from suite.report.statistics.inference import (
     CONSTANT,
+    Array,
     Interval,
     bootstrap,
     holm,
@@ -28,8 +29,9 @@ from suite.report.statistics.inference import (
     probability_interval,
     sign_test,
 )
-from suite.report.table import Table
-from suite.report.tables.compared import SIDE_BY_SIDE, at_a_glance
+from suite.report.table import Kind, Table
+from suite.report.tables.glance import SIDE_BY_SIDE, at_a_glance
+from suite.report.words import counted
 
 REFERENCE = "kbga"
 """The planner that the others are compared with, unless another one is asked for; the first one
@@ -232,7 +234,7 @@ def statistics_tables(
     scenes, scores = scores_by_planner(steps)
     if not scenes:
         return []
-    where = f"{len(scenes)} scene{'s' if len(scenes) != 1 else ''}"
+    where = counted(len(scenes), "scene")
     one = reference or reference_of(scores)
     constant = deterministic(steps.runs)
     overall = planner_statistics(scores, rng, one, constant)
@@ -273,6 +275,7 @@ def _scene_tables(
         tested,
         " ".join(filter(None, [f"{pair}. Holm's p: {tests}", warning])),
         detail=True,
+        kinds={"p": Kind.P_VALUE, "Holm's p": Kind.P_VALUE},
     )
     if len(scenes) > SIDE_BY_SIDE:
         return [rows]

@@ -10,19 +10,19 @@ import numpy as np
 import pandas as pd
 
 from suite.paper.reported import KBGA, KBGA_PLUS, PLAIN_GA, find
-from suite.report.table import Table
+from suite.report.rows import feasible, places, settings_of
+from suite.report.table import Kind, Table
 from suite.report.tables.compared import (
+    COLUMNS,
+    KINDS,
     NOTE,
     PENALTIES_NOTE,
     RATIO_NOTE,
-    at_a_glance,
     compare,
     families,
-    places,
-    settings_of,
     whole_where_whole,
 )
-from suite.report.tables.summary import feasible
+from suite.report.tables.glance import at_a_glance
 
 GLANCE_NOTE = (
     "Mean gap to the exact optimum in per cent, over the runs that found a path; how many these "
@@ -31,6 +31,8 @@ GLANCE_NOTE = (
 TIME_NOTE = (
     "The paper's times are from a Pentium III at 933 MHz: compare the ratios, not the seconds."
 )
+
+PAPER_KINDS = {"paper time (s)": Kind.PRINTED, "paper ratio": Kind.PRINTED}
 
 RESAMPLES = 2000
 """Two digits of a per cent."""
@@ -279,9 +281,7 @@ def _glance_table(study: Study, frame: pd.DataFrame) -> Table:
 def _rows_table(study: Study, frame: pd.DataFrame) -> Table:
     shown = frame.assign(**{study.symbol: _values(frame)}).rename(columns={"family": "planner"})
     columns = [
-        "scene", "planner", study.symbol, "runs", "feasible", "first feasible (%)", "cost mean",
-        "cost SD", "gap mean (%)", "cost with penalties mean", "gen to best mean", "checks mean",
-        "cpu to best mean (ms)", "cpu total median (ms)", "ratio to best", "ratio total",
+        "scene", "planner", study.symbol, "runs", "feasible", "first feasible (%)", *COLUMNS,
         "paper time (s)", "paper ratio",
     ]  # fmt: skip
     notes = [NOTE, RATIO_NOTE.format(reference=f"{study.symbol} {study.reference:g}")]
@@ -301,6 +301,7 @@ def _rows_table(study: Study, frame: pd.DataFrame) -> Table:
         f"{study.title}: all measures",
         shown[[c for c in columns if c in shown]],
         " ".join(notes),
+        kinds=KINDS | PAPER_KINDS,
     )
 
 
@@ -350,7 +351,11 @@ def _best_table(runs: pd.DataFrame, study: Study, frame: pd.DataFrame) -> Table:
         f"({RESAMPLES} bootstrap draws). {PENALTIES_NOTE}"
     )
     return Table(
-        f"study-{study.name}-best", f"{study.title}: the best", best_values(runs, study), note
+        f"study-{study.name}-best",
+        f"{study.title}: the best",
+        best_values(runs, study),
+        note,
+        kinds={"paper's best": Kind.PRINTED},
     )
 
 
@@ -403,10 +408,11 @@ def obstacles(runs: pd.DataFrame, planner: str = KBGA) -> pd.DataFrame:
 
 def _obstacles_table(frame: pd.DataFrame) -> Table:
     columns = [
-        "scene", "planner", "obstacles", "runs", "feasible", "cost mean", "cost SD", "gap mean (%)",
-        "gen to best mean", "checks mean", "cpu per check (us)", "cpu to best mean (ms)",
-        "cpu total median (ms)", "ratio to best", "ratio total", "paper time (s)", "paper ratio",
+        "scene", "planner", "obstacles", "runs", "feasible", *COLUMNS, "paper time (s)",
+        "paper ratio",
     ]  # fmt: skip
+    columns.remove("cost with penalties mean")
+    columns.insert(columns.index("checks mean") + 1, "cpu per check (us)")
     shown = frame.assign(obstacles=_values(frame))
     if len(set(frame["planner"])) == 1:
         columns.remove("planner")
@@ -415,6 +421,5 @@ def _obstacles_table(frame: pd.DataFrame) -> Table:
         f"{NOTE} cpu per check: that of a whole run by its checks, median. "
         f"{RATIO_NOTE.format(reference='20 obstacles')} {TIME_NOTE}"
     )
-    return Table(
-        "study-obstacles", "Paper's section IV: the number of obstacles", shown[columns], note
-    )
+    title = "Paper's section IV: the number of obstacles"
+    return Table("study-obstacles", title, shown[columns], note, kinds=KINDS | PAPER_KINDS)

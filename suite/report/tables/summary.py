@@ -10,8 +10,10 @@ from typing import Any
 import pandas as pd
 
 from suite.planner import PlanStatus
-from suite.report.statistics.clock import joined, untimed_note
-from suite.report.table import Table
+from suite.report.rows import feasible, places
+from suite.report.statistics.clock import untimed_note
+from suite.report.table import Kind, Table
+from suite.report.words import joined
 
 NARROW = [
     "scene",
@@ -25,6 +27,10 @@ NARROW = [
     "time total median (ms)",
 ]
 """Columns that fit into a terminal and onto a page."""
+
+KINDS = dict.fromkeys(
+    ("gen to best mean", "gen to best SD", "gen total mean", "gen total SD"), Kind.COUNT
+)
 
 WORDS = (
     "solved: with a path that the referee accepts, or with the proof that there is none. without "
@@ -59,8 +65,10 @@ def summary(runs: pd.DataFrame) -> pd.DataFrame:
     DataFrame
         A row for each scene, query and planner variant, in the order of their first runs by name.
     """
-    groups = runs.groupby(["scene", "query", "variant"], sort=False)
-    rows = [{**_names(runs, name), **_measures(group)} for name, group in groups]
+    rows = [
+        {"scene": place, "planner": variant, **_measures(group)}
+        for (place, variant), group in runs.groupby([places(runs), "variant"], sort=False)
+    ]
     frame = pd.DataFrame(rows, columns=None if rows else ["scene", "planner", "runs"])
     for column in ("runs", "solved", "without path", "failed"):
         if column in frame:
@@ -84,9 +92,9 @@ def summary_tables(runs: pd.DataFrame, left_out: int = 0) -> list[Table]:
         note += f" Left out: {left_out} rows of scenes, settings or planners that changed since."
     narrow = frame[[name for name in NARROW if name in frame]]
     return [
-        Table("summary", "Results per scene and planner", narrow, note),
+        Table("summary", "Results per scene and planner", narrow, note, kinds=KINDS),
         Table("summary-rows", "All measures per scene and planner", frame, f"{note} {ROWS_NOTE}",
-              detail=True),
+              detail=True, kinds=KINDS),
     ]  # fmt: skip
 
 
@@ -101,11 +109,6 @@ def _counted(runs: pd.DataFrame) -> str:
     )
 
 
-def feasible(runs: pd.DataFrame) -> pd.DataFrame:
-    """The runs that ended with a path that the referee accepted."""
-    return runs[(runs["status"] == str(PlanStatus.SOLVED)) & runs["cost"].notna()]
-
-
 def spread(values: "pd.Series[Any]", what: str, unit: str = "") -> dict[str, float]:
     """Mean and sample standard deviation of the values that are there, named for a table."""
     numbers = values.dropna().astype("float64")
@@ -114,12 +117,6 @@ def spread(values: "pd.Series[Any]", what: str, unit: str = "") -> dict[str, flo
         f"{what} mean{suffix}": float(numbers.mean()),
         f"{what} SD{suffix}": float(numbers.std(ddof=1)),
     }
-
-
-def _names(runs: pd.DataFrame, name: Any) -> dict[str, str]:
-    scene, query, variant = (str(part) for part in name)
-    several = len(runs.loc[runs["scene"] == scene, "query"].unique()) > 1
-    return {"scene": f"{scene}/{query}" if several else scene, "planner": variant}
 
 
 def _measures(group: pd.DataFrame) -> dict[str, Any]:

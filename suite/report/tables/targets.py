@@ -11,9 +11,10 @@ import numpy as np
 import pandas as pd
 
 from suite.report.statistics.anytime import Steps, first_within
-from suite.report.statistics.clock import by_the_clock, joined, untimed_note
-from suite.report.table import Table
-from suite.report.tables.compared import SIDE_BY_SIDE, at_a_glance
+from suite.report.statistics.clock import by_the_clock, untimed_note
+from suite.report.table import Kind, Table
+from suite.report.tables.glance import SIDE_BY_SIDE, at_a_glance, planners_together
+from suite.report.words import joined, of_some
 
 TARGETS = (0.05, 0.02, 0.01, 0.001)
 """Gaps to the optimum."""
@@ -27,6 +28,8 @@ MEASURES = {
     "checks median": ("checks", 1.0),
 }
 """Columns, the clocks that they are read from, and their units."""
+
+KINDS = {"gen median": Kind.COUNT, "checks median": Kind.COUNT}
 
 NOTE = (
     "Medians over all runs: one that never came so near counts as infinitely long, so that "
@@ -114,19 +117,16 @@ def target_tables(steps: Steps) -> list[Table]:
     title = "What it takes to come within a gap of the optimum"
     left_out = untimed_note(steps.runs)
     note = joined(NOTE, left_out)
-    rows = Table("fixed-target-rows", title, frame, note, infinite="never", detail=True)
+    rows = Table(
+        "fixed-target-rows", title, frame, note, infinite="never", detail=True, kinds=KINDS
+    )
     if frame["scene"].nunique() > SIDE_BY_SIDE:
         return [rows]
-    glanced = at_a_glance(_with_target_names(frame), ["planner", "within"], _time)
+    named = frame.assign(within=[f"{target:g} %" for target in frame["target (%)"]])
+    ordered = planners_together(named, "target (%)", falling=True)
+    glanced = at_a_glance(ordered, ["planner", "within"], _time)
     title = "Median time (ms) to come within a gap of the optimum"
     return [Table("fixed-target", title, glanced, joined(GLANCE_NOTE, left_out)), rows]
-
-
-def _with_target_names(frame: pd.DataFrame) -> pd.DataFrame:
-    """With a column for the target as it is printed; a planner's rows together."""
-    named = frame.assign(within=[f"{target:g} %" for target in frame["target (%)"]])
-    order = {name: i for i, name in enumerate(dict.fromkeys(named["planner"]))}
-    return named.sort_values("planner", key=lambda names: names.map(order), kind="stable")
 
 
 def _time(row: Mapping[Any, Any]) -> str:
@@ -135,8 +135,7 @@ def _time(row: Mapping[Any, Any]) -> str:
         return f"contended ({share})"
     if np.isinf(row[TIME]):
         return f"never ({share})"
-    time = significant(row[TIME])
-    return time if row["reached"] == row["runs"] else f"{time} ({share})"
+    return of_some(significant(row[TIME]), row["reached"], row["runs"])
 
 
 def significant(value: float) -> str:

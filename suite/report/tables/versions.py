@@ -14,13 +14,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from suite.planner import PlanStatus
-from suite.report.rows import newest
-from suite.report.statistics.clock import by_the_clock, dropped_note, fair, joined, untimed_note
+from suite.report.rows import NAME, newest
+from suite.report.statistics.clock import by_the_clock, dropped_note, fair, untimed_note
 from suite.report.statistics.few_runs import too_few
 from suite.report.statistics.inference import LEVEL, REPETITIONS, holm, mann_whitney
-from suite.report.table import Table
-
-PLACE = ["scene", "query", "world", "variant"]
+from suite.report.table import Kind, Table
+from suite.report.words import joined
 
 BOOTSTRAP_SEED = 2026
 
@@ -125,7 +124,8 @@ def compare_versions(
         same = set(old["host"]) == set(new["host"])
         note += TIME_NOTE.format(where="one host" if same else "different hosts")
     counts = {str(word): int(n) for word, n in counted["verdict"].value_counts().items()}
-    return Changes(Table("versions", "What changed", frame, note), counts, _too_few(scores))
+    table = Table("versions", "What changed", frame, note, kinds={"p": Kind.P_VALUE})
+    return Changes(table, counts, _too_few(scores))
 
 
 _TIMES = [measure.name for measure in MEASURES if measure.is_time]
@@ -136,7 +136,7 @@ _EMPTY = (
 
 
 def _groups(runs: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
-    for place, group in fair(newest(runs)).groupby(PLACE, sort=False, dropna=False):
+    for place, group in fair(newest(runs)).groupby(NAME, sort=False, dropna=False):
         yield tuple(part if isinstance(part, str) else "" for part in place), group
 
 

@@ -7,7 +7,8 @@ import pytest
 from suite.conformance.finding import Kind
 from suite.conformance.rules import examine
 from suite.conformance.subject import Subject
-from suite.plugins.discovery import GROUP, load_planner, make_settings
+from suite.plugins.discovery import GROUP, load_planner
+from suite.plugins.settings import make_settings
 
 OURS = [p.name for p in entry_points(group=GROUP) if p.dist and p.dist.name == "kbga-bench"]
 

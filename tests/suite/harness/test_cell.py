@@ -121,7 +121,7 @@ def test_a_scene_that_changed_after_the_matrix_was_read_is_an_error(wall_file):
     )
     record = run_cell(changed)
     assert record.status is PlanStatus.ERROR
-    assert "is not the scene any more that it was at first" in record.reason
+    assert "the scene has changed since its rows were made, or wanted" in record.reason
 
 
 def test_checks_that_were_asked_stand_beside_those_that_were_computed(run, tmp_path):

@@ -8,8 +8,9 @@ import pytest
 
 from suite.harness import fork_server
 from suite.harness.cell import build_planner
+from suite.harness.fleet import stop_server
 from suite.harness.fork_server import Warmth
-from suite.harness.isolate import run_isolated, stop_server
+from suite.harness.isolate import run_isolated
 from suite.harness.matrix import Limits
 from suite.harness.single import cell_for
 from suite.planner import PlanStatus

@@ -5,7 +5,7 @@ import pytest
 
 from suite.errors import MatrixError
 from suite.harness.matrix import Limits, load_matrix
-from suite.harness.outline import FOLDER, matrix_names, outline
+from suite.harness.matrix_file import FOLDER, matrix_names, outline
 from suite.planner import Budget
 from suite.plugins.discovery import available_planners
 from suite.scenes.catalogue import scene_names
@@ -146,10 +146,10 @@ def test_a_plugin_that_cannot_be_imported_is_no_reason_to_refuse_the_matrix(writ
     ("old", "new", "message"),
     [
         ("seeds = 3", "seeds = ", "walls.toml: not TOML"),
-        ("seeds = 3", "seeds = 0", "seeds is 0. Give 1 or more."),
+        ("seeds = 3", "seeds = 0", "seeds is 0. Give a number of seeds, 1 or more, or a list"),
         ("seeds = 3", "seeds = true", "seeds is True"),
-        ("seeds = 3", "seeds = []", "seeds is empty"),
-        ("seeds = 3", "seeds = [1, -1]", "-1 is no seed"),
+        ("seeds = 3", "seeds = []", "seeds is []. Give a number of seeds, 1 or more, or a list"),
+        ("seeds = 3", "seeds = [1, -1]", "seeds is -1. Give whole numbers of 0 or more."),
         ("seeds = 3", "seeds = [1, 1]", "two seeds are named '1'"),
         ("seeds = 3", "", "'seeds' is missing"),
         ("seeds = 3", "sedes = 3", "unknown key 'sedes'"),
@@ -160,14 +160,18 @@ def test_a_plugin_that_cannot_be_imported_is_no_reason_to_refuse_the_matrix(writ
         ('["zigzag"]', '["zigzga"]', "Did you mean 'zigzag'?"),
         ('["zigzag"]', '["zigzag", "zigzag"]', "two scenes are named 'zigzag'"),
         ('["zigzag"]', '"zigzag"', "scenes is 'zigzag'. Give a list of names, files, or tables"),
-        ('["zigzag"]', "[3]", "scenes is [3]"),
+        ('["zigzag"]', "[3]", "scenes 1: scenes is 3. Give the name or the file of a scene"),
         ('["zigzag"]', '["zigzag@twin=3..1"]', "scenes: zigzag@twin=3..1: its twins go from 3"),
         ('["zigzag"]', '["zigzag@trun=3"]', "no modifier 'trun'"),
-        ('["zigzag"]', '[{ scen = "maze" }]', "scene 1: unknown key 'scen'"),
-        ('["zigzag"]', "[{ seeds = 3 }]", "scene 1: 'scene' is missing"),
-        ('["zigzag"]', '[{ scene = "maze", seeds = 0 }]', "scene 1: seeds is 0. Give 1 or more."),
+        ('["zigzag"]', '[{ scen = "maze" }]', "scenes 1: unknown key 'scen'"),
+        ('["zigzag"]', "[{ seeds = 3 }]", "scenes 1: 'scene' is missing"),
+        (
+            '["zigzag"]',
+            '[{ scene = "maze", seeds = 0 }]',
+            "scenes 1: seeds is 0. Give a number",
+        ),
         ('["zigzag"]', '["nowhere.geojson"]', "nowhere.geojson: can't be read"),
-        ("grace_s = 2", "grace_s = 0", "walls.toml, limits: grace_s is 0. It must be above 0."),
+        ("grace_s = 2", "grace_s = 0", "walls.toml, limits: grace_s is 0.0. It must be above 0."),
         ("grace_s = 2", 'grace_s = "2"', "grace_s is '2'. Give a number."),
         ("grace_s = 2", "grace = 2", "Did you mean 'grace_s'?"),
         ('"visibility-graph"', '"visibility-grap"', "Did you mean 'visibility-graph'?"),
@@ -184,7 +188,7 @@ def test_a_plugin_that_cannot_be_imported_is_no_reason_to_refuse_the_matrix(writ
         (
             "budget = {",
             "settings = { x = 1 }\nbudget = {",
-            "planner 'again': settings: visibility-graph: no setting 'x'",
+            "planner 'again', settings: visibility-graph: no setting 'x'",
         ),
         ("[[planner]]", "[planner]", "not TOML"),
     ],
@@ -197,7 +201,8 @@ def test_a_bad_matrix_is_refused_with_what_where_and_how_to_mend(written, old, n
 def test_a_matrix_without_planners_is_refused(written):
     text = GOOD[: GOOD.index("[[planner]]")]
     assert "'planner' is missing: give at least one [[planner]]." in refused(written(text))
-    assert "no array of tables" in refused(written(text + '[planner]\nplanner = "kbga"\n'))
+    one = '[planner]\nplanner = "kbga"\n'
+    assert "Give at least one [[planner]]." in refused(written(text + one))
 
 
 def test_the_matrix_of_all_planners_leaves_none_of_ours_out():
@@ -262,9 +267,9 @@ def test_a_simulated_run_is_not_killed_after_the_time_of_one_plan(written):
     ("old", "new", "message"),
     [
         ('["door"]', '["dor"]', "'dor' is no scene of this matrix. Did you mean 'door'?"),
-        ("speed = 5.0", "speed = 0", "settings: world: speed is 0."),
-        ("speed = 5.0", "sped = 5.0", "world: it holds 'sped'. It takes speed, interval"),
-        ("speed = 5.0", "charge = 'none'", "charge is 'none'. It must be 'measured' or 'zero'."),
+        ("speed = 5.0", "speed = 0", "settings: world: speed is 0.0."),
+        ("speed = 5.0", "sped = 5.0", "world: unknown key 'sped'. It may have: speed, interval"),
+        ("speed = 5.0", "charge = 'none'", "charge is 'none'. Give one of 'measured', 'zero'."),
         ('name = "own"', 'name = "fast"', "two worlds are named 'fast'"),
         ('name = "own"', 'name = "own"\nscenes = ["door"]', "'unknown_obstacles' is in none"),
         ("cold = true", "cold = 1", "planner 'kbga-cold': cold is 1. Give true or false."),
@@ -276,7 +281,7 @@ def test_a_world_that_cannot_be_is_refused(written, old, new, message):
 
 def test_only_simulated_runs_can_be_cold(written):
     said = refused(written(GOOD + "cold = true\n"))
-    assert "unknown key 'cold'" in said
+    assert "planner 'again': cold is for simulated runs. Leave it out" in said
 
 
 def test_a_budget_may_be_of_cpu_time(written):

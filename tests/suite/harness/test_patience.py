@@ -20,38 +20,38 @@ def loads(*values):
 
 def test_it_waits_until_others_leave_a_core(monkeypatch):
     patience = Patience(10.0, loads(64.0, 64.0, 0.0))
-    with patience.own_core(wanted=True):
+    with patience.free_core(wanted=True):
         assert 2 * module.WINDOW_S <= patience.waited_s < 5.0
 
 
 def test_an_idle_machine_costs_nothing():
     patience = Patience(10.0, loads(0.0))
-    with patience.own_core(wanted=True):
+    with patience.free_core(wanted=True):
         assert patience.waited_s == 0.0
 
 
 def test_who_wants_no_core_does_not_wait():
     patience = Patience(10.0, loads(64.0))
-    with patience.own_core(wanted=False):
+    with patience.free_core(wanted=False):
         assert patience.waited_s == 0.0
 
 
 def test_it_waits_no_longer_in_all_than_it_is_told():
     patience = Patience(0.5, loads(64.0))
     for _ in range(3):
-        with patience.own_core(wanted=True):
+        with patience.free_core(wanted=True):
             pass
     assert 0.5 <= patience.waited_s < 2.0
     began = time.monotonic()
-    with patience.own_core(wanted=True):
+    with patience.free_core(wanted=True):
         assert time.monotonic() - began < 0.1
 
 
 def test_runs_of_our_own_take_cores_too():
     patience = Patience(0.3, loads(honest_jobs() - 1.0))
-    with patience.own_core(wanted=True):
+    with patience.free_core(wanted=True):
         assert patience.waited_s == 0.0
-        with patience.own_core(wanted=True):
+        with patience.free_core(wanted=True):
             # Where there is but one core, nobody who asks for two jobs can be helped.
             assert patience.waited_s > 0.0 or honest_jobs() == 1
 
@@ -61,7 +61,7 @@ def test_giving_up_lets_all_go_on_at_once():
     ends = []
 
     def run():
-        with patience.own_core(wanted=True):
+        with patience.free_core(wanted=True):
             ends.append(time.monotonic())
 
     threads = [threading.Thread(target=run) for _ in range(3)]

@@ -4,8 +4,7 @@ import pytest
 
 from suite.harness.cell import run_cell
 from suite.harness.rerun import compare
-from suite.harness.single import cell_for
-from suite.harness.single_simulation import world_for
+from suite.harness.single import cell_for, world_for
 from suite.planner import Budget
 from suite.store.row_names import cell_of
 from suite.store.write import open_store

@@ -7,8 +7,7 @@ import shapely
 
 from suite.harness.cell import run_cell
 from suite.harness.simulated_cell import exact_length
-from suite.harness.single import cell_for
-from suite.harness.single_simulation import world_for
+from suite.harness.single import cell_for, world_for
 from suite.planner import Budget, PlanStatus
 from suite.scenes.dynamics import Dynamics, constant_speed
 from suite.scenes.geojson import write_scene

@@ -8,14 +8,9 @@ import pytest
 
 from suite.errors import PluginError
 from suite.planner import Plan, Planner, PlanStatus
-from suite.plugins.discovery import (
-    available_planners,
-    load_planner,
-    make_settings,
-    planner_names,
-    planner_version,
-    settings_as_dict,
-)
+from suite.plugins.discovery import available_planners, load_planner, planner_names, planner_version
+from suite.plugins.settings import make_settings
+from suite.typed import plain
 
 GOOD = """
 from dataclasses import dataclass
@@ -294,7 +289,7 @@ def test_made_settings_are_frozen():
         ("elitist", 1, "true or false"),
         ("label", 3, "a string"),
         ("limit", "few", "a whole number or none"),
-        ("kind", "loose", "one of 'grid', 'free'"),
+        ("kind", "loose", "one of 'free', 'grid'"),
         ("weights", "1, x", "a list (a number, ...)"),
     ],
 )
@@ -320,7 +315,7 @@ def test_what_the_settings_refuse_keeps_its_message():
 
 def test_settings_read_back_as_what_makes_them():
     made = make_settings(Some, {"weights": [1, 2], "limit": 3})
-    told = settings_as_dict(made)
+    told = plain(made)
     assert list(told) == ["population", "rate", "elitist", "label", "limit", "kind", "weights"]
     assert told["weights"] == [1.0, 2.0]
     assert make_settings(Some, told) == made

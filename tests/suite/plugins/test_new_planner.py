@@ -40,7 +40,7 @@ def test_its_metadata_declare_the_class_that_is_there(written):
     ]
     declared = tomllib.loads(project.read_text())["project"]["entry-points"]["kbga_bench.planners"]
     assert declared == {"first-try": "first_try:FirstTry"}
-    assert "class FirstTry(Planner):" in module.read_text()
+    assert "class FirstTry(Planner[FirstTrySettings]):" in module.read_text()
     assert "planner = FirstTry" in test.read_text()
 
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from suite.errors import ContractError
-from suite.planner import Improvement, Recorder
-from suite.referee.claims import as_count, as_measure, disorder, improvements, trace
+from suite.planner import Improvement, Plan, PlanStatus, Recorder
+from suite.referee.claims import as_count, as_measure, disorder, improvements, plain_plan, trace
 
 
 def reports(*costs_and_times):
@@ -66,3 +66,40 @@ def test_costs_fall_and_times_rise_within_the_run(listed, wrong):
 
 def test_reports_in_order_are_left_in_peace():
     assert disorder(reports((3.0, 0.1), (2.0, 0.1), (1.5, 0.9)), 1.0) is None
+
+
+def test_a_plan_comes_out_in_numbers_of_pythons_own_with_its_path_as_it_was():
+    path = np.zeros((2, 2), dtype=np.float32)
+    plan = plain_plan(
+        Plan("solved", path, np.float32(0.5), np.int64(7), 3.0, np.int32(9), {1: np.int8(4)}, 2)
+    )
+    assert plan.path is path
+    assert plan.status is PlanStatus.SOLVED
+    counts = (plan.generations, plan.generation_of_best, plan.checks, plan.computed_checks)
+    assert counts == (7, 3, 9, 2)
+    assert {type(count) for count in counts} == {int}
+    assert (plan.claimed_cost, plan.details) == (0.5, {"1": 4.0})
+    assert {type(plan.claimed_cost), type(plan.details["1"])} == {float}
+
+
+@pytest.mark.parametrize(
+    ("returned", "wrong"),
+    [
+        (None, "plan returned NoneType. It must return a Plan."),
+        (
+            Plan(PlanStatus.CRASHED),
+            "plan returned the status .*crashed.*. It may claim solved, infeasible, exhausted.",
+        ),
+        (Plan("done"), "plan returned the status 'done'"),
+        (Plan(PlanStatus.SOLVED), "plan says 'solved' and returns no path."),
+        (Plan(PlanStatus.EXHAUSTED, generations=-1), "generations of the plan is -1"),
+        (Plan(PlanStatus.EXHAUSTED, generation_of_best="3"), "generation_of_best of the plan is"),
+        (Plan(PlanStatus.EXHAUSTED, computed_checks=3), "computed_checks of the plan are 3"),
+        (Plan(PlanStatus.EXHAUSTED, claimed_cost="3.5"), "claimed_cost of the plan is '3.5'"),
+        (Plan(PlanStatus.EXHAUSTED, details=None), "details of the plan are a NoneType"),
+        (Plan(PlanStatus.EXHAUSTED, details={"mood": "good"}), "the detail 'mood' of the plan is"),
+    ],
+)
+def test_what_is_no_well_formed_plan_is_refused_with_what_is_wrong(returned, wrong):
+    with pytest.raises(ContractError, match=wrong):
+        plain_plan(returned)

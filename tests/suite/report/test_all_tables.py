@@ -1,13 +1,13 @@
 import statistics
 
-import pandas as pd
 import pytest
 
 from suite.errors import KbgaBenchError
 from suite.planner import PlanStatus
 from suite.report.all_tables import all_tables
+from suite.report.formats import render
+from suite.report.kinds import TableFormat
 from suite.report.paper.tables import paper_static, paper_table_1, paper_tables
-from suite.report.table import Format, Table, named, render
 from suite.report.tables.summary import NARROW, summary, summary_tables
 from suite.store.read import read_events, read_runs
 from suite.store.write import open_store
@@ -83,7 +83,7 @@ def test_the_summary_is_narrow_and_the_rows_behind_it_have_all_columns(runs_of):
     names = ("a-planner-with-a-long-name", "kbga")
     runs = runs_of(*(solved(15000.0, variant=name, wall_s=600.0) for name in names))
     few, all_ = summary_tables(runs)
-    assert max(map(len, render(few, Format.TABLE).splitlines())) <= 100
+    assert max(map(len, render(few, TableFormat.TABLE).splitlines())) <= 100
     assert list(few.frame.columns) == NARROW
     assert set(NARROW) < set(all_.frame.columns)
     assert all_.detail
@@ -215,35 +215,6 @@ def test_every_table_of_times_says_that_the_papers_machine_was_another(runs_of):
 
 
 @pytest.fixture
-def table():
-    frame = pd.DataFrame(
-        {"planner": ["a_b", "c"], "cost mean": [1.0, float("nan")], "runs": [20, 3]}
-    )
-    return Table("costs", "Costs & more", frame, "A note with 5 %.")
-
-
-def test_text_and_markdown_round_and_leave_gaps_where_nothing_is_known(table):
-    for style in (Format.TABLE, Format.MARKDOWN):
-        text = render(table, style)
-        assert "Costs & more" in text
-        assert "1.00" in text
-        assert "nan" not in text
-        assert text.endswith("A note with 5 %.\n")
-
-
-def test_csv_holds_the_numbers_as_they_are(table):
-    assert render(table, Format.CSV) == "planner,cost mean,runs\na_b,1.0,20\nc,,3\n"
-
-
-def test_latex_is_escaped_and_has_caption_and_label(table):
-    text = render(table, Format.LATEX)
-    assert r"\caption{Costs \& more. A note with 5 \%.}" in text
-    assert r"\label{tab:costs}" in text
-    assert r"a\_b" in text
-    assert r"\begin{tabular}{lrr}" in text
-
-
-@pytest.fixture
 def every_table(runs_of, tmp_path):
     """Of two planners on the paper's scene, twice."""
     when = {"started_at": "2026-01-01T00:00:00"}
@@ -263,7 +234,7 @@ def test_the_summary_comes_first_then_the_ranking_and_the_paper_last(every_table
 
 
 def test_the_same_rows_give_the_same_bytes(every_table):
-    one, two = ([render(t, Format.CSV) for t in tables] for tables in every_table)
+    one, two = ([render(t, TableFormat.CSV) for t in tables] for tables in every_table)
     assert one == two
 
 
@@ -290,56 +261,3 @@ def test_settings_of_our_own_are_no_answer_to_the_paper(runs_of):
 def test_a_reference_that_nobody_ran_is_refused_with_the_names_that_there_are(runs_of):
     with pytest.raises(KbgaBenchError, match=r"no planner 'rrt' .* Take one of: kbga, plain-ga"):
         all_tables(runs_of(solved(156.0), exhausted()), reference="rrt")
-
-
-def test_tables_are_chosen_by_name_and_an_unknown_name_is_refused(table):
-    other = Table("other", "Other", table.frame)
-    assert named([table, other], []) == [table, other]
-    assert named([table, other], ["other", "costs", "other"]) == [other, table]
-    with pytest.raises(KbgaBenchError, match=r"no table 'cost' .* Take one of: costs, other"):
-        named([table, other], ["cost"])
-
-
-def test_a_heading_takes_no_more_room_than_its_longest_word():
-    frame = pd.DataFrame({"gap": [1.0], "planner": ["a"], "cost mean (%)": [100.0]})
-    text = render(Table("t", "T", frame), Format.TABLE)
-    assert text == (
-        "T\n\n                 cost\n                 mean\n gap  planner     (%)\n"
-        "----  -------  ------\n1.00  a        100.00\n"
-    )
-
-
-def test_a_table_without_rows_has_its_headings():
-    frame = pd.DataFrame(columns=["scene", "planner"])
-    assert "scene  planner\n-----  -------" in render(Table("t", "T", frame), Format.TABLE)
-
-
-def test_in_latex_what_is_too_wide_is_scaled_and_what_is_too_long_goes_on(table):
-    text = render(table, Format.LATEX)
-    assert r"\resizebox{\ifdim\width>\linewidth\linewidth\else\width\fi}{!}{%" in text
-    assert r"\shortstack{cost\\mean}" in text
-    frame = pd.concat([table.frame] * 30)
-    text = render(Table("long", "Costs", frame, "A note."), Format.LATEX)
-    assert r"\begin{longtable}{lrr}" in text
-    assert text.count("A note.") == 1
-    assert r"\caption[]{Costs, continued}" in text
-    assert text.count("{") == text.count("}")
-
-
-def test_an_infinite_number_is_printed_in_words():
-    frame = pd.DataFrame({"time (ms)": [1.0, float("inf")]})
-    table = Table("t", "T", frame, infinite="never")
-    assert "never" in render(table, Format.TABLE)
-    assert render(table, Format.CSV) == "time (ms)\n1.0\ninf\n"
-
-
-def test_latex_has_a_less_than_sign_in_every_font():
-    table = Table("t", "T", pd.DataFrame({"better": ["0.90 (<0.001)"]}), "p < 0.001")
-    text = render(table, Format.LATEX)
-    assert "0.90 ($<$0.001)" in text
-    assert "p $<$ 0.001" in text
-
-
-def test_small_p_values_keep_their_digits():
-    table = Table("t", "T", pd.DataFrame({"p": [0.00123], "x": [0.00123]}))
-    assert "0.0012" in render(table, Format.MARKDOWN)

@@ -104,8 +104,8 @@ def refusal(tmp_path):
 @pytest.mark.parametrize(
     ("properties", "message"),
     [
-        ({"motion": 3}, "its motion is 3. Give an object of start, stop, velocity, waypoints."),
-        ({"motion": {"speed": 3}}, "its motion has the unknown 'speed'. It takes start,"),
+        ({"motion": 3}, "its motion is 3. Give an object of waypoints, or velocity, start"),
+        ({"motion": {"speed": 3}}, "its motion: unknown key 'speed'. It may have: waypoints,"),
         ({"motion": {}}, "its motion has to have either waypoints or a velocity."),
         ({"motion": {"waypoints": []}}, "its waypoints have the shape (0,). Give [[t, dx, dy]"),
         ({"motion": {"waypoints": [[0, "a", 0]]}}, "its waypoints are no table of numbers."),
@@ -114,15 +114,15 @@ def refusal(tmp_path):
         ({"motion": {"waypoints": [[-1, 0, 0]]}}, "its waypoints are [-1.0]. They must rise"),
         ({"motion": {"waypoints": [[0, 1e99, 0]]}}, "a waypoint is not finite or beyond 1e+09"),
         ({"motion": {"waypoints": [[0, 0, 0]], "stop": 3}}, "has waypoints and more"),
-        ({"motion": {"velocity": [1, 0]}}, "its stop is None. Give a finite number."),
+        ({"motion": {"velocity": [1, 0]}}, "its motion has a velocity and no stop."),
         ({"motion": {"velocity": 1, "stop": 3}}, "its velocity is 1. Give [vx, vy], metres"),
         ({"motion": {"velocity": [1, 0], "start": 3, "stop": 3}}, "Give a later stop."),
         ({"detection": True}, "its detection is True. Give an object of range."),
-        ({"detection": {"range": -1}}, "its range is -1. Give 0 or more."),
+        ({"detection": {"range": -1}}, "its range is -1. Give a finite number, 0 or more."),
         ({"removal": {}}, "its removal names neither a time nor a place. Give one of them."),
         ({"removal": {"place": [1, 1]}}, "its removal has to have place and distance together."),
-        ({"removal": {"time": True}}, "its time is True. Give a finite number."),
-        ({"appears": "later"}, "its appears is 'later'. Give a finite number."),
+        ({"removal": {"time": True}}, "its time is True. Give a finite number, 0 or more."),
+        ({"appears": "later"}, "its appears is 'later'. Give a finite number, 0 or more."),
     ],
 )
 def test_bad_dynamics_are_refused_with_what_where_and_how_to_mend(refusal, properties, message):

@@ -1,11 +1,15 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import shapely
+from hypothesis import given
+from hypothesis import strategies as st
 
 from suite.geometry.kernels import first_collision
 from suite.scenes.catalogue import load_scene, scene_names
 from suite.scenes.exact import shortest_path
-from suite.scenes.homotopy import reduced, route_optima
+from suite.scenes.homotopy import reduced, route_optima, routes_of
 from suite.scenes.scene import Scene, make_scene
 
 
@@ -117,3 +121,25 @@ def test_a_letter_and_its_inverse_cancel():
     assert reduced((1, 2, 3), (-3, -2, 4)) == (1, 4)
     assert reduced((1,), (-1,)) == ()
     assert reduced((), (1, 1)) == (1, 1)
+
+
+corners = st.tuples(st.integers(0, 8), st.integers(0, 8))
+
+
+@given(st.lists(corners, min_size=1, max_size=6), corners)
+def test_two_paths_are_on_one_route_past_a_post_if_and_only_if_they_do_not_wind_around_it(
+    between, corner
+):
+    # So thin that no path between whole corners meets it: none comes as near as 4e-4 to its middle.
+    place = np.array([corner[0] + 0.373, corner[1] + 0.419])
+    post = shapely.Point(place).buffer(1e-4, quad_segs=2)
+    scene = make_scene("post", shapely.box(-2, -2, 10, 10), [post], {"main": ((-1, 4), (9, 4))})
+    path = np.array([(-1, 4), *between, (9, 4)], dtype=float)
+    straight = np.array([(-1.0, 4.0), (9.0, 4.0)])
+    loop = np.vstack([path, straight[::-1]]) - place
+    # Corners may lie so far apart that an angle turns by half: follow the way in small steps.
+    fine = np.vstack([np.linspace(a, b, 200) for a, b in pairwise(loop)])
+    angles = np.unwrap(np.arctan2(fine[:, 1], fine[:, 0]))
+    winding = round((angles[-1] - angles[0]) / (2 * np.pi))
+    one, other = routes_of(scene, [path, straight])
+    assert (one == other) == (winding == 0)

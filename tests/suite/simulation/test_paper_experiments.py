@@ -6,8 +6,7 @@ from itertools import pairwise
 import pytest
 
 from suite.harness.cell import run_cell
-from suite.harness.single import cell_for
-from suite.harness.single_simulation import simulation_of, world_for
+from suite.harness.single import cell_for, simulation_of, world_for
 from suite.planner import Budget
 from suite.simulation.run import Simulation
 

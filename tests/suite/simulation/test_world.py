@@ -81,13 +81,13 @@ def test_a_scene_holds_defaults_and_a_run_may_differ():
 @pytest.mark.parametrize(
     ("world", "message"),
     [
-        ({"spee": 3}, "its property 'world' holds 'spee'. It takes speed, interval,"),
-        ([], r"its property 'world' holds \[\]. It takes speed,"),
-        ({"speed": 0}, "speed is 0. It must be a finite number, above 0."),
-        ({"interval": "2"}, "interval is '2'. It must be a finite number, above 0."),
-        ({"sensing_range": -1}, "sensing_range is -1. It must be a finite number, 0 or more."),
+        ({"spee": 3}, "'world': unknown key 'spee'. It may have: speed, interval,"),
+        ([], r"'world': it is \[\]. Give a table."),
+        ({"speed": 0}, "speed is 0.0. It must be a finite number, above 0."),
+        ({"interval": "2"}, "interval is '2'. Give a number."),
+        ({"sensing_range": -1}, "sensing_range is -1.0. It must be a finite number, 0 or more."),
     ],
 )
 def test_bad_settings_are_refused_with_what_where_and_how_to_mend(world, message):
-    with pytest.raises(SceneError, match=f"drawn: .*{message}"):
+    with pytest.raises(SceneError, match=f"drawn, its property .*{message}"):
         world_settings(scene_of(world=world))

@@ -3,6 +3,7 @@ import sqlite3
 import subprocess
 import sys
 from contextlib import closing
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,8 @@ from suite.store.read import (
     read_traces,
     stored_cell,
 )
-from suite.store.record import World, short_hash
+from suite.store.record import Cell, RunRecord, World, short_hash
+from suite.store.schema import columns_now
 from suite.store.write import open_store
 from tests.suite.harness.records import make_cell, make_record
 
@@ -55,6 +57,23 @@ def test_a_row_comes_back_as_it_was_written(file):
     assert row["details"] == '{"restarts":2.0}'
     assert not row["contended"]
     assert read_sessions(file) == [{"id": 1, "matrix": "m", "python": "3.11"}]
+
+
+def test_whatever_cell_and_record_say_has_a_column_or_a_table_of_its_own():
+    columns = set(columns_now("runs"))
+    said = {field.name for kind in (Cell, RunRecord) for field in fields(kind)}
+    elsewhere = {"cell", "budget", "improvements", "trace", "path", "simulation", "snapshots"}
+    assert said - columns == elsewhere
+    made = {"key", "session", "settings_hash", "world_settings", "cold"}
+    assert columns - said == made | {f"budget_{field.name}" for field in fields(Budget)}
+
+
+def test_no_column_is_left_empty_that_somebody_fills(file):
+    world = World("slow", {"speed": 2.0}, cold=True)
+    cell = make_cell(budget=Budget(1.0, 2, 3, 4.0), world=world)
+    optional = {f.name for f in fields(RunRecord) if f.default is None} - {"path", "simulation"}
+    filled(file, make_record(cell=cell, **dict.fromkeys(optional, 1) | {"reason": "late"}))
+    assert read_runs(file).notna().all(axis=None)
 
 
 SIMULATION = {
@@ -216,7 +235,7 @@ def test_a_store_that_another_process_writes_to_says_so(file, monkeypatch):
     filled(file)
     other = sqlite3.connect(file)
     other.execute("BEGIN IMMEDIATE")
-    monkeypatch.setattr("suite.store.write.BUSY_S", 0.1)
+    monkeypatch.setattr("suite.store.connection.BUSY_S", 0.1)
     with open_store(file) as store, pytest.raises(StoreError, match="another process"):
         store.begin_session({})
     other.close()

@@ -7,11 +7,11 @@ import pytest
 from suite.planner import PlanStatus
 from suite.report.figures.comparison import comparison_figures
 from suite.report.figures.convergence import convergence_figures, plot_convergence
+from suite.report.figures.files import save
 from suite.report.figures.overview import overview_figures
-from suite.report.figures.panels import LEAST_GAP
 from suite.report.figures.ranks import joined, rank_figures
 from suite.report.figures.runtime import plot_ecdf, runtime_figures
-from suite.report.figures.scene import save
+from suite.report.figures.style import LEAST_GAP
 from suite.report.statistics.anytime import Steps
 from tests.suite.report.measured_rows import measured, steps
 

@@ -4,7 +4,8 @@ import pytest
 import shapely
 
 from suite.errors import KbgaBenchError
-from suite.report.figures.scene import check_figure_file, plot_run, plot_scene_results, save
+from suite.report.figures.files import check_figure_file, save
+from suite.report.figures.scene import plot_run, plot_scene_results
 from suite.scenes.catalogue import load_scene
 from suite.scenes.exact import shortest_path
 from suite.scenes.scene import make_scene

@@ -8,7 +8,7 @@ from shapely.geometry import box
 from baselines.visibility_graph import VisibilityGraphPlanner
 from suite.errors import KbgaBenchError
 from suite.report.figures import simulation
-from suite.report.figures.scene import save
+from suite.report.figures.files import save
 from suite.report.figures.simulation import (
     animate,
     check_animation_file,

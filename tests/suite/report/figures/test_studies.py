@@ -1,7 +1,7 @@
 import matplotlib.pyplot as plt
 import pytest
 
-from suite.report.figures.scene import save
+from suite.report.figures.files import save
 from suite.report.figures.studies import study_figures
 from suite.report.tables.ablation import OPERATORS
 from suite.report.tables.studies import STUDIES

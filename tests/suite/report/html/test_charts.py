@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from suite.report.figures.panels import numbered
 from suite.report.figures.runtime import TARGETS
+from suite.report.figures.style import numbered
 from suite.report.html.appearance import COLOURS, PLANNERS_AT_MOST, appearance
 from suite.report.html.charts import ALL_SCENES, LINES_AT_MOST, convergence_chart, ecdf_chart
 from suite.report.html.evidence import read_evidence

@@ -12,14 +12,13 @@ import shapely
 
 from suite.errors import KbgaBenchError
 from suite.harness.cell import run_cell
-from suite.harness.single import cell_for
-from suite.harness.single_simulation import world_for
+from suite.harness.single import cell_for, world_for
 from suite.planner import PlanStatus
-from suite.report.figures.overview import NOTHING
+from suite.report.all_tables import read_tables
+from suite.report.figures.style import NOTHING
+from suite.report.formats import as_texts
 from suite.report.html.page import write_report
 from suite.report.html.shades import contrast
-from suite.report.results_folder import read_tables
-from suite.report.table import as_texts
 from suite.scenes.geojson import write_scene
 from suite.scenes.scene import make_scene
 from tests.suite.commands import in_own_process
@@ -260,7 +259,7 @@ def test_a_scene_that_changed_or_is_gone_is_told_of_and_not_drawn(tmp_path):
     file = wall_scene(tmp_path / "w.geojson", 7)
     store = write_store(tmp_path / "s.db", [ran(file, "visibility-graph")])
     file.unlink()
-    assert "can't be loaded any more" in report_of(store).text["scenes"]
+    assert "It can't be drawn: " in report_of(store).text["scenes"]
 
 
 def test_rows_of_a_scene_that_changed_since_are_not_drawn_on_it(tmp_path):
@@ -281,7 +280,7 @@ def test_names_with_signs_of_markup_are_texts(tmp_path):
 
 
 def test_a_file_that_cannot_be_a_page_is_refused_beforehand(store, tmp_path):
-    with pytest.raises(KbgaBenchError, match=r"a report is \.html"):
+    with pytest.raises(KbgaBenchError, match=r"reports are \.html"):
         write_report(store, tmp_path / "x.pdf")
     with pytest.raises(KbgaBenchError, match="there is no folder"):
         write_report(store, tmp_path / "none" / "x.html")

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from matplotlib.colors import to_hex
 
-from suite.report.figures.overview import NOTHING, colouring
+from suite.report.figures.style import NOTHING, colouring
 from suite.report.html.cells import sheet
 from suite.report.html.shades import contrast, ink_on, shaded
 from suite.report.table import Table

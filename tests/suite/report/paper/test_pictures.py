@@ -1,14 +1,10 @@
 """The paper's pictures: which there are, and that routes are told apart by what they go round."""
 
-from itertools import pairwise
-
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
 import shapely
-from hypothesis import given
-from hypothesis import strategies as st
 
 from suite.planner import Snapshot
 from suite.report.paper.pictures import (
@@ -16,7 +12,6 @@ from suite.report.paper.pictures import (
     least_inside,
     paper_pictures,
     plot_evolution,
-    sides,
 )
 from suite.scenes.scene import make_scene
 
@@ -67,25 +62,6 @@ def test_paths_on_both_sides_of_an_obstacle_are_two_routes_and_the_shortest_of_e
     assert list(best) == ["(a), 1 of 3 runs", "(b), 2 of 3 runs"]
     assert [cost for _, cost in best.values()] == [9.5, 10.0]
     assert [path.tolist() for path, _ in best.values()] == [BELOW.tolist(), ABOVE.tolist()]
-
-
-corners = st.tuples(st.integers(0, 8), st.integers(0, 8))
-
-
-@given(st.lists(corners, min_size=1, max_size=6), corners)
-def test_two_paths_agree_in_their_sides_if_and_only_if_they_do_not_wind_around_the_place(
-    between, corner
-):
-    # A place with fractions is on no path between whole corners that could graze its ray.
-    place = np.array([[corner[0] + 0.37, corner[1] + 0.41]])
-    path = np.array([(-1, 4), *between, (9, 4)], dtype=float)
-    straight = np.array([(-1.0, 4.0), (9.0, 4.0)])
-    loop = np.vstack([path, straight[::-1]]) - place
-    # Corners may lie so far apart that an angle turns by half: follow the way in small steps.
-    fine = np.vstack([np.linspace(a, b, 200) for a, b in pairwise(loop)])
-    angles = np.unwrap(np.arctan2(fine[:, 1], fine[:, 0]))
-    winding = round((angles[-1] - angles[0]) / (2 * np.pi))
-    assert (sides(path, place) == sides(straight, place)) == (winding == 0)
 
 
 @pytest.mark.parametrize(

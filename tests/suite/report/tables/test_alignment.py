@@ -1,7 +1,8 @@
 import pytest
 
 from suite.report.all_tables import all_tables
-from suite.report.table import Format, render
+from suite.report.formats import render
+from suite.report.kinds import TableFormat
 from suite.report.tables.alignment import alignment, alignment_tables, without_repeats
 from tests.suite.report.study_rows import run, runs_of
 
@@ -75,7 +76,7 @@ def test_a_control_has_a_verdict_of_its_own_below_the_scenes_and_is_not_counted(
     ]
     (table,) = alignment_tables(runs)
     assert table.note.endswith("it holds on 1 of 1 for kbga.")
-    assert "maze_aligned" in render(table, Format.MARKDOWN)
+    assert "maze_aligned" in render(table, TableFormat.MARKDOWN)
 
 
 def test_each_planner_is_compared_with_itself():

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from suite.planner import Budget
-from suite.report.table import Format, render
+from suite.report.formats import render
+from suite.report.kinds import TableFormat
 from suite.report.tables.budgets import budget_tables, fixed_budget
 from tests.suite.report.measured_rows import measured, steps
 
@@ -52,7 +53,7 @@ def test_at_a_glance_planners_stand_together_and_no_path_is_said():
     )  # fmt: skip
     # b was never run on zigzag.
     assert glance.frame.iloc[-1].tolist() == ["b", "1000 ms", "", "1.00"]
-    assert "no path" in render(detail, Format.MARKDOWN)
+    assert "no path" in render(detail, TableFormat.MARKDOWN)
 
 
 def test_a_scene_without_an_optimum_has_no_gap():

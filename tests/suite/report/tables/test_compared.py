@@ -2,13 +2,9 @@ import pandas as pd
 import pytest
 
 from suite.planner import Budget
-from suite.report.tables.compared import (
-    at_a_glance,
-    compare,
-    families,
-    settings_of,
-    whole_where_whole,
-)
+from suite.report.rows import settings_of
+from suite.report.tables.compared import compare, families, whole_where_whole
+from suite.report.tables.glance import at_a_glance
 from tests.suite.report.study_rows import run, runs_of
 
 

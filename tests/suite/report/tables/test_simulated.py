@@ -5,7 +5,8 @@ import pytest
 from suite.harness.matrix import load_matrix
 from suite.harness.run import run_matrix
 from suite.planner import PlanStatus
-from suite.report.results_folder import read_tables, write_results
+from suite.report.all_tables import read_tables
+from suite.report.results_folder import write_results
 from suite.store.record import World
 from suite.store.write import open_store
 from tests.suite.harness.records import make_cell, make_record

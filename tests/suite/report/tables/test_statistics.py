@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from suite.report.table import Format, render
+from suite.report.formats import render
+from suite.report.kinds import TableFormat
 from suite.report.tables.statistics import (
     planner_statistics,
     scene_statistics,
@@ -70,7 +71,7 @@ def test_scene_by_scene_p_values_are_corrected_for_all_of_them(both):
 
 def test_over_a_quarter_of_failures_there_is_no_mean_gap():
     table = tables(*ending("kbga", [100.0] * 4), *ending("rrt", [100.0, 101.0, None, None]))[0]
-    text = render(table, Format.MARKDOWN)
+    text = render(table, TableFormat.MARKDOWN)
     (line,) = [line for line in text.splitlines() if line.startswith("| rrt")]
     assert "none" in line
     assert "inf" not in line
@@ -119,15 +120,15 @@ def test_without_a_scene_that_all_ran_or_an_optimum_there_is_nothing_to_compare(
 
 def test_the_same_rows_give_the_same_tables():
     records = [*ending("kbga", [101.0, 102.0, 104.0]), *ending("rrt", [101.5, 102.0, None])]
-    one, two = ([render(t, Format.CSV) for t in tables(*records)] for _ in range(2))
+    one, two = ([render(t, TableFormat.CSV) for t in tables(*records)] for _ in range(2))
     assert one == two
 
 
 def test_tables_are_fit_for_a_paper():
     records = [*ending("kbga", [101.0, 102.0]), *ending("rrt", [103.0, 104.0])]
     for table in tables(*records):
-        assert r"\begin{tabular}" in render(table, Format.LATEX)
-        assert render(table, Format.MARKDOWN).startswith("### ")
+        assert r"\begin{tabular}" in render(table, TableFormat.LATEX)
+        assert render(table, TableFormat.MARKDOWN).startswith("### ")
 
 
 def alike(planner, cost, times=4, scene="zigzag"):
@@ -164,7 +165,7 @@ def test_two_planners_that_draw_nothing_need_no_test():
     assert np.isnan(rows.loc["grid", ["p", "Holm's p"]].astype(float)).all()
     # Holm's factor is the number of tests: one.
     assert rows.loc["kbga", "Holm's p"] == rows.loc["kbga", "p"] == pytest.approx(0.25)
-    assert "nan" not in render(found[-2], Format.MARKDOWN)
+    assert "nan" not in render(found[-2], TableFormat.MARKDOWN)
     overall = found[0].frame.set_index("planner")
     assert np.isnan(overall.loc["grid", "P(exact better) low"])
     assert "with a constant against 3 and 1 comparison" in found[-1].note

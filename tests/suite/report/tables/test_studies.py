@@ -5,7 +5,8 @@ from suite.harness.matrix import load_matrix
 from suite.harness.single import cell_for
 from suite.paper.reported import find
 from suite.planner import Budget
-from suite.report.table import Format, render
+from suite.report.formats import render
+from suite.report.kinds import TableFormat
 from suite.report.tables.studies import (
     FIRST_POPULATION,
     MUTATION_RATE,
@@ -242,5 +243,5 @@ def test_every_table_of_a_study_can_be_printed():
     tables = study_tables(runs)
     assert len(tables) == 6
     for table in tables:
-        for style in Format:
+        for style in TableFormat:
             assert "nan" not in render(table, style).replace("nant", "")

@@ -4,7 +4,8 @@ import re
 import pandas as pd
 import pytest
 
-from suite.report.table import Format, render
+from suite.report.formats import render
+from suite.report.kinds import TableFormat
 from suite.report.tables.targets import fixed_target, medians, target_tables
 from tests.suite.report.measured_rows import measured, steps
 
@@ -66,8 +67,8 @@ def test_more_scenes_than_stand_side_by_side_leave_the_rows():
 def test_csv_holds_infinity_and_people_read_never():
     detail = target_tables(steps(measured("kbga", 0, [])))[1]
     assert detail.detail
-    assert ",inf," in render(detail, Format.CSV)
-    for style in (Format.TABLE, Format.MARKDOWN, Format.LATEX):
+    assert ",inf," in render(detail, TableFormat.CSV)
+    for style in (TableFormat.TABLE, TableFormat.MARKDOWN, TableFormat.LATEX):
         text = render(detail, style)
         # Four clocks of four targets; the note explains the word once more.
         assert text.count("never") >= 16

@@ -1,0 +1,162 @@
+"""The processes of runs in flight: started by the warmed fork server, reaped, and killed.
+
+multiprocessing's bookkeeping of children polls all of them whenever one is started, and two threads
+that poll one child race for its exit code; so starting and reaping take turns.
+"""
+
+import contextlib
+import multiprocessing
+import os
+import threading
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from multiprocessing import forkserver
+from multiprocessing.connection import wait
+from multiprocessing.context import ForkServerProcess
+from typing import Any
+
+from suite.errors import HarnessError
+from suite.harness.child import run_in_child
+from suite.harness.fork_server import Warmth
+from suite.processes.family import kill_children, kill_family, kill_group
+from suite.processes.multiprocessing_private import forget_server, main_module, server_pid
+
+REAP_S = 5.0
+"""What a killed process may take to be gone; longer only in the kernel's uninterruptible sleep."""
+
+ANSWER_S = 0.5
+"""A fork server that takes longer to start a process is still warming up."""
+
+STARTS = 3
+"""A planner that kills its parent takes the fork server away from the others: they try again."""
+
+_CONTEXT = multiprocessing.get_context("forkserver")
+
+
+@dataclass(slots=True, eq=False)
+class _Fleet:
+    """The runs of this process that are in flight, and how often they were told to stop.
+
+    turn : held while one is started or reaped; then the children of the fork server are the runs in
+        flight, and orphans of others.
+    """
+
+    pids: set[int] = field(default_factory=set)
+    stops: int = 0
+    turn: threading.Lock = field(default_factory=threading.Lock)
+
+
+_fleet = _Fleet()
+
+
+class StoppedError(Exception):
+    """The runs in flight were killed before this one had a process."""
+
+
+def start_server(warmth: Warmth) -> None:
+    """Start the fork server, if it does not run yet; it warms itself while the caller goes on."""
+    with _fleet.turn, _server_environment(warmth):
+        forkserver.ensure_running()
+
+
+def stop_server() -> None:
+    """End the fork server, when no run is in flight: the next run starts another, newly warmed."""
+    with _fleet.turn:
+        if (server := server_pid()) is not None:
+            # It may be in the middle of its warming, which can take minutes.
+            kill_family(server)
+        forget_server()
+
+
+def kill_running() -> None:
+    """Kill all runs of this process that are in flight; their callers get CRASHED records."""
+    _fleet.stops += 1
+    if _fleet.turn.acquire(timeout=ANSWER_S):
+        _fleet.turn.release()
+    elif (server := server_pid()) is not None:
+        kill_family(server)
+    for pid in list(_fleet.pids):
+        kill_family(pid)
+
+
+def start(arguments: tuple[Any, ...], warmth: Warmth) -> ForkServerProcess:
+    """Start the process of a run, which :func:`end` must be called for.
+
+    Parameters
+    ----------
+    arguments : of :func:`suite.harness.child.run_in_child`
+    warmth : Warmth
+        For the fork server: the first start, and one after its death, makes a new one.
+
+    Raises
+    ------
+    StoppedError
+        If the runs in flight were killed meanwhile.
+    HarnessError
+        If the system starts no process.
+    """
+    stops = _fleet.stops
+    for _ in range(STARTS):
+        with _fleet.turn, _server_environment(warmth):
+            if _fleet.stops != stops:
+                break
+            process = _CONTEXT.Process(target=run_in_child, args=arguments)
+            with contextlib.suppress(EOFError, OSError):
+                process.start()
+                _fleet.pids.add(process.ident or 0)
+                return process
+    if _fleet.stops != stops:
+        raise StoppedError
+    raise HarnessError(
+        "no process can be started for a run. Look at the limits for processes, open files and "
+        "memory, then run the same command again: it goes on where it stopped."
+    )
+
+
+def reap(process: ForkServerProcess, timeout_s: float = REAP_S) -> int | None:
+    """Exit code of a process, negative for a signal; None if it still runs."""
+    if not wait([process.sentinel], timeout_s):
+        return None
+    with _fleet.turn:
+        process.join(0)
+        return process.exitcode
+
+
+def end(process: ForkServerProcess, *, is_alone: bool) -> None:
+    """Kill what is left of a run, wherever it went.
+
+    Parameters
+    ----------
+    process : ForkServerProcess
+    is_alone : bool
+        Whether it is known that nothing descends from it any more.
+    """
+    pid = process.ident or 0
+    kill_group(pid)
+    if reap(process) is None:
+        kill_family(pid)
+    with _fleet.turn:
+        _fleet.pids.discard(pid)
+        server = server_pid()
+        if not is_alone and server is not None:
+            kill_children(server, REAP_S, but=_fleet.pids)
+
+
+@contextlib.contextmanager
+def _server_environment(warmth: Warmth) -> Iterator[None]:
+    """The settings that a fork server started now inherits; variables are put back afterwards."""
+    # The warm-up comes last: it leaves alone, for good, what is loaded by then.
+    _CONTEXT.set_forkserver_preload([run_in_child.__module__, Warmth.__module__])
+    # A planner that goes through sets of strings then repeats itself from one server to the next.
+    salt = {"PYTHONHASHSEED": os.environ.get("PYTHONHASHSEED", "0")}
+    wanted = salt | replace(warmth, main=main_module()).environment()
+    before = {name: os.environ.get(name) for name in wanted}
+    os.environ.update(wanted)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value

@@ -1,0 +1,238 @@
+"""The file of a matrix: its format, where the suite keeps its own, and how large each is.
+
+The file
+--------
+A TOML file::
+
+    name = "walls"
+    description = "What it is for."
+    scenes = ["zigzag", "my_scene.geojson"]  # catalogue names, or paths relative to this file
+    seeds = 20                               # 0 to 19; or a list of seeds
+
+    [limits]                                 # optional; see Limits
+    grace_s = 10
+
+    [[planner]]
+    name = "kbga-small"                      # of the variant; default: the planner's own
+    planner = "kbga"
+    settings = {population_size = 20}        # what is left out keeps its default
+    budget = {generations = 200}             # fields of Budget; none: its own stop
+
+Every query of every scene is run with every variant and every seed.
+
+A scene may be modified, as in ``zigzag@turn=17`` (see :mod:`suite.scenes.modifiers`), and a range
+of twins stands for as many scenes. With a table in place of its name, a scene has seeds of its own,
+so that several twins need not make the matrix as many times as large::
+
+    scenes = ["zigzag", { scene = "zigzag@twin=1..10", seeds = 5 }]
+
+A matrix of simulated runs names worlds. Then every scene is driven through in each of its worlds,
+and the budget is that of each single plan::
+
+    [[world]]
+    name = "fast robot"
+    scenes = ["door"]                        # default: all
+    settings = {speed = 5.0}                 # of WorldSettings; the rest as the scene wants it
+
+    [[planner]]
+    name = "kbga-cold"
+    planner = "kbga"
+    cold = true                              # plan afresh, though it could go on from what it knows
+"""
+
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+from msgspec import Meta, Struct
+
+from suite.errors import MatrixError
+from suite.scenes.modifiers import expand_twins
+from suite.typed import MisfitError, typed
+
+FOLDER = Path(__file__).parent / "matrices"
+
+
+class _Table(Struct, frozen=True, forbid_unknown_fields=True):
+    """Base of the tables of a file: no other keys than these."""
+
+
+_Name = Annotated[str, Meta(min_length=1)]
+_Seed = Annotated[int, Meta(ge=0, description="whole numbers of 0 or more")]
+_Seeds = Annotated[
+    Annotated[int, Meta(ge=1)] | Annotated[list[_Seed], Meta(min_length=1)],
+    Meta(description="a number of seeds, 1 or more, or a list of them"),
+]
+_SceneName = Annotated[_Name, Meta(description="the name or the file of a scene")]
+
+
+class SceneEntry(_Table, frozen=True):
+    """A scene, or a range of twins, that may have seeds of its own."""
+
+    scene: _SceneName
+    seeds: _Seeds | None = None
+
+
+class WorldEntry(_Table, frozen=True):
+    """A [[world]]: settings of a simulation, for some scenes or for all."""
+
+    name: Annotated[_Name, Meta(description="the world a name, for tables")]
+    scenes: Annotated[list[str], Meta(min_length=1, description="a list of scenes")] | None = None
+    settings: dict[str, Any] = {}
+
+
+class PlannerEntry(_Table, frozen=True):
+    """A [[planner]]: a variant."""
+
+    planner: Annotated[
+        _Name, Meta(description="the name of a planner (see `kbga-bench list planners`)")
+    ]
+    name: _Name | None = None
+    settings: dict[str, Any] = {}
+    budget: dict[str, Any] = {}
+    cold: bool = False
+
+
+_Planners = Annotated[
+    list[PlannerEntry], Meta(min_length=1, description="at least one [[planner]]")
+]
+_Worlds = Annotated[list[WorldEntry], Meta(min_length=1, description="at least one [[world]]")]
+
+
+class MatrixFile(_Table, frozen=True):
+    """The whole file."""
+
+    seeds: _Seeds
+    scenes: Annotated[
+        list[_SceneName | SceneEntry],
+        Meta(
+            min_length=1,
+            description="a list of names, files, or tables { scene = ..., seeds = ... }, "
+            "at least one",
+        ),
+    ]
+    planner: _Planners
+    world: _Worlds = []
+    name: _Name | None = None
+    description: str = ""
+    limits: dict[str, Any] = {}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Source:
+    """Where a matrix comes from, for errors.
+
+    file : name of the file.
+    document : what TOML holds there.
+    """
+
+    file: str
+    document: dict[str, Any]
+
+    def error(self, keys: Sequence[str | int], what: str) -> MatrixError:
+        """An error that names the place that some keys lead to, by the names that stand there."""
+        words: list[str] = []
+        place: Any = self.document
+        for key in keys:
+            place = place[key]
+            if isinstance(key, str):
+                words.append(key)
+            else:
+                names = place if isinstance(place, dict) else {}
+                name = names.get("name") or names.get("planner")
+                words[-1] += f" '{name}'" if name else f" {key + 1}"
+        return MatrixError(f"{', '.join([self.file, *words])}: {what}")
+
+
+def matrix_names() -> list[str]:
+    """Names of the matrices that ship with the suite.
+
+    Examples
+    --------
+    >>> "paper-static" in matrix_names()
+    True
+    """
+    return sorted(path.stem for path in FOLDER.glob("*.toml"))
+
+
+def matrix_file(name_or_path: str | Path) -> Path:
+    """The file of a matrix of the catalogue, or a file of one's own.
+
+    Raises
+    ------
+    MatrixError
+        If there is none.
+    """
+    path = Path(name_or_path)
+    if str(name_or_path) in matrix_names():
+        return FOLDER / f"{name_or_path}.toml"
+    if path.exists():
+        return path
+    raise MatrixError(
+        f"no matrix '{name_or_path}'. Give a file, or one of: {', '.join(matrix_names())}."
+    )
+
+
+def read_matrix_file(path: Path) -> tuple[Source, MatrixFile]:
+    """Read a matrix as it is written. What it names is looked for by :mod:`suite.harness.matrix`.
+
+    Raises
+    ------
+    MatrixError
+        If the file can't be read, is not TOML, or holds anything of another form.
+    """
+    source = Source(path.name, _read_toml(path))
+    try:
+        return source, typed(source.document, MatrixFile)
+    except MisfitError as error:
+        # The value's own name is in the text of the error.
+        named = error.keys and isinstance(error.keys[-1], str) and " is " in str(error)
+        raise source.error(error.keys[:-1] if named else error.keys, str(error)) from error
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise MatrixError(f"{path}: can't be read ({error.strerror}).") from error
+    except UnicodeDecodeError as error:
+        raise MatrixError(f"{path.name}: is not UTF-8 text (byte {error.start}).") from error
+    except tomllib.TOMLDecodeError as error:
+        raise MatrixError(f"{path.name}: not TOML: {error}.") from error
+
+
+def outline(name: str) -> dict[str, Any]:
+    """What a matrix of the catalogue is for, and its numbers of scenes, planners, seeds and runs.
+
+    It is read from the file alone: to check a matrix is to draw all of its scenes and to import all
+    of its planners. Each of its scenes has one query.
+
+    Examples
+    --------
+    >>> outline("paper-static")["runs"]
+    1440
+    """
+    _, file = read_matrix_file(matrix_file(name))
+    entries = [SceneEntry(e) if isinstance(e, str) else e for e in file.scenes]
+    seeds = {twin: e.seeds or file.seeds for e in entries for twin in expand_twins(e.scene)}
+    runs = sum(_count(own) * _worlds(file, scene) for scene, own in seeds.items())
+    return {
+        "description": file.description,
+        "scenes": len(seeds),
+        "planners": len(file.planner),
+        "seeds": _count(file.seeds),
+        "runs": runs * len(file.planner),
+    }
+
+
+def _count(seeds: int | list[int]) -> int:
+    return seeds if isinstance(seeds, int) else len(seeds)
+
+
+def _worlds(file: MatrixFile, scene: str) -> int:
+    """How often a scene is run with one seed: once, or once in each of its worlds."""
+    if not file.world:
+        return 1
+    return sum(world.scenes is None or scene in world.scenes for world in file.world)

@@ -1,0 +1,54 @@
+"""Numbers and sentences as tables, notes and pictures write them."""
+
+from collections.abc import Iterable
+
+
+def fixed(value: float, digits: int = 2) -> str:
+    """A number with so many digits after the point, and no sign before a zero.
+
+    Examples
+    --------
+    >>> fixed(-0.0001), fixed(2.345, 1)
+    ('0.00', '2.3')
+    """
+    return f"{round(value, digits) + 0.0:.{digits}f}"
+
+
+def counted(number: int, what: str) -> str:
+    """So many of something.
+
+    Examples
+    --------
+    >>> counted(1, "scene"), counted(8, "scene")
+    ('1 scene', '8 scenes')
+    """
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+def of_some(text: str, some: int, runs: int) -> str:
+    """A measure, and how many of the runs it is over, if not over all.
+
+    Examples
+    --------
+    >>> of_some("0.24", 20, 20), of_some("0.24", 19, 20)
+    ('0.24', '0.24 (19 of 20)')
+    """
+    return text if some == runs else f"{text} ({some} of {runs})"
+
+
+def some_of(names: Iterable[object], most: int) -> str:
+    """The first of some names, and how many more there are.
+
+    Examples
+    --------
+    >>> some_of("abc", 3), some_of("abcde", 3)
+    ('a, b, c', 'a, b, c and 2 more')
+    """
+    different = list(dict.fromkeys(map(str, names)))
+    more = f" and {len(different) - most} more" if len(different) > most else ""
+    return ", ".join(different[:most]) + more
+
+
+def joined(*sentences: str) -> str:
+    """A note of several sentences, of which some may be empty."""
+    return " ".join(filter(None, sentences))
