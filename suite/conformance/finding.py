@@ -26,7 +26,7 @@ class NotApplicable:
     reason: str
 
 
-Outcome = Finding | NotApplicable | None
+Answer = Finding | NotApplicable | None
 """What a rule says of a planner; None if it is kept."""
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from suite.conformance.finding import Outcome
+from suite.conformance.finding import Answer
 from suite.conformance.small_scenes import SmallScene, asked, small_scenes
 from suite.conformance.surroundings import Surroundings, fingerprint
 from suite.errors import ContractError
@@ -258,7 +258,7 @@ class Subject:
         return Trial(scene, budget, seed, done, drew, changed, before, after)
 
 
-Rule = Callable[[Subject], Outcome]
+Rule = Callable[[Subject], Answer]
 """A function whose name and docstring are the name and the claim of the rule."""
 
 

@@ -15,14 +15,12 @@ from suite.scenes.scene import scene_fingerprint
 from suite.simulation.record import from_data
 from suite.simulation.run import Simulation
 from suite.simulation.settings import world_settings
+from suite.simulation.view import is_turn
 from suite.store.record import Cell, RunRecord, World
 from suite.typed import plain
 
 COLD = "-cold"
 """What the name of a planner that is made to plan afresh ends in; part of its random stream."""
-
-TURN_M = 1.0
-"""A way ahead that becomes longer or shorter by more is news, metres."""
 
 
 def cell_for(
@@ -303,16 +301,8 @@ def _eventful(data: Mapping[str, Any]) -> list[Mapping[str, Any]]:
         if new["status"] != old["status"]
         or new["time"] in detections
         or (new["changed"] and not old["changed"])
-        or _is_turn(old, new, speed)
+        or is_turn(old["cost"], new["cost"], speed * (new["time"] - old["time"]))
     ]
-
-
-def _is_turn(old: Mapping[str, Any], new: Mapping[str, Any], speed: float) -> bool:
-    """Whether a path is longer or shorter than what was left of the one before."""
-    if old["cost"] is None or new["cost"] is None:
-        return old["cost"] is not new["cost"]
-    left = old["cost"] - speed * (new["time"] - old["time"])
-    return bool(abs(new["cost"] - left) > TURN_M)
 
 
 def _hit_as_text(hit: Mapping[str, Any]) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from suite.conformance.finding import Finding, NotApplicable, Outcome
+from suite.conformance.finding import Answer, Finding, NotApplicable
 from suite.conformance.subject import Subject, Trial
 from suite.planner import Budget, PlanStatus
 
@@ -41,17 +41,17 @@ def most_checks(budget: int) -> int:
     return ceil((1.0 + SHARE_IN_HAND) * budget)
 
 
-def keeps_wall_time(subject: Subject) -> Outcome:
+def keeps_wall_time(subject: Subject) -> Answer:
     """A run ends when its wall time is over, if it says that it keeps wall_s."""
     return _timed(subject, "wall_s")
 
 
-def keeps_cpu_time(subject: Subject) -> Outcome:
+def keeps_cpu_time(subject: Subject) -> Answer:
     """A run ends when its CPU time is over, if it says that it keeps cpu_s."""
     return _timed(subject, "cpu_s")
 
 
-def _timed(subject: Subject, clock: str) -> Outcome:
+def _timed(subject: Subject, clock: str) -> Answer:
     if clock not in subject.planner_class.abilities.budgets:
         return NotApplicable(f"{clock} is not among the budgets that it keeps.")
     counted = subject.planner_class.abilities.budgets & {"generations", "checks"}
@@ -89,12 +89,12 @@ def _late(trial: Trial, clock: str, what: str) -> Finding:
     )
 
 
-def keeps_generations(subject: Subject) -> Outcome:
+def keeps_generations(subject: Subject) -> Answer:
     """A run ends after its generations, and counts them, if it says that it keeps them."""
     return _counted(subject, "generations", GENERATIONS, GENERATIONS)
 
 
-def keeps_checks(subject: Subject) -> Outcome:
+def keeps_checks(subject: Subject) -> Answer:
     """A run ends after its collision checks, within 2 %, if it says that it keeps them.
 
     Checks are questions asked: one that is answered from memory counts too.
@@ -102,7 +102,7 @@ def keeps_checks(subject: Subject) -> Outcome:
     return _counted(subject, "checks", CHECKS, most_checks(CHECKS))
 
 
-def _counted(subject: Subject, name: str, limit: int, most: int) -> Outcome:
+def _counted(subject: Subject, name: str, limit: int, most: int) -> Answer:
     if name not in subject.planner_class.abilities.budgets:
         return NotApplicable(f"{name} is not among the budgets that it keeps.")
     roomy: dict[str, Any] = (
@@ -137,7 +137,7 @@ def _uncounted(trial: Trial, name: str, what: str, most: int) -> Finding:
     )
 
 
-def ends_or_refuses_whatever_the_budget(subject: Subject) -> Outcome:
+def ends_or_refuses_whatever_the_budget(subject: Subject) -> Answer:
     """Without a budget, or with one that it keeps only in part, a run ends or is refused."""
     others = [Budget(generations=1, checks=1), Budget(1.0, generations=1, checks=1)]
     # Where an ordinary run raises something, another rule says it.

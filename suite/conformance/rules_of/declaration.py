@@ -5,7 +5,7 @@ import pickle
 from collections.abc import Set
 from typing import Any
 
-from suite.conformance.finding import Finding, Outcome
+from suite.conformance.finding import Answer, Finding
 from suite.conformance.subject import Subject
 from suite.errors import PluginError
 from suite.planner import Budget
@@ -14,7 +14,7 @@ from suite.plugins.validation import NAME, flaw
 from suite.typed import plain
 
 
-def is_a_planner(subject: Subject) -> Outcome:
+def is_a_planner(subject: Subject) -> Answer:
     """It is a subclass of Planner with a plan of the right signature, for this interface."""
     wrong = flaw(subject.planner_class)
     if wrong is None:
@@ -26,7 +26,7 @@ def is_a_planner(subject: Subject) -> Outcome:
     )
 
 
-def name_is_well_formed(subject: Subject) -> Outcome:
+def name_is_well_formed(subject: Subject) -> Answer:
     """Its name is of lower-case letters, digits and single hyphens."""
     name: Any = getattr(subject.planner_class, "name", None)
     if isinstance(name, str) and NAME.fullmatch(name):
@@ -38,7 +38,7 @@ def name_is_well_formed(subject: Subject) -> Outcome:
     )
 
 
-def abilities_are_known(subject: Subject) -> Outcome:
+def abilities_are_known(subject: Subject) -> Answer:
     """The budgets that it says it keeps are budgets."""
     known = {field.name for field in dataclasses.fields(Budget)}
     budgets: Any = subject.planner_class.abilities.budgets
@@ -55,7 +55,7 @@ def abilities_are_known(subject: Subject) -> Outcome:
     )
 
 
-def settings_are_frozen(subject: Subject) -> Outcome:
+def settings_are_frozen(subject: Subject) -> Answer:
     """Its Settings are a frozen dataclass."""
     parameters: Any = getattr(subject.planner_class.Settings, "__dataclass_params__", None)
     if parameters is not None and parameters.frozen:
@@ -67,7 +67,7 @@ def settings_are_frozen(subject: Subject) -> Outcome:
     )
 
 
-def settings_come_back(subject: Subject) -> Outcome:
+def settings_come_back(subject: Subject) -> Answer:
     """Its settings survive the way through a matrix and a row: plain data that make them again."""
     given = subject.settings or subject.planner_class.Settings()
     settings, told = subject.planner_class(given).settings, plain(given)
@@ -89,7 +89,7 @@ def _lost(told: Any, what: str) -> Finding:
     )
 
 
-def pickles(subject: Subject) -> Outcome:
+def pickles(subject: Subject) -> Answer:
     """Its class and settings can be pickled: that is how they reach other processes."""
     wanted = (subject.planner_class, subject.build().settings)
     try:

@@ -12,7 +12,7 @@ import subprocess
 import sys
 from typing import Any
 
-from suite.conformance.finding import Finding, NotApplicable, Outcome
+from suite.conformance.finding import Answer, Finding, NotApplicable
 from suite.conformance.rules_of.repeatability import difference, keeps_no_state
 from suite.conformance.subject import Subject
 from suite.plugins.from_file import named_plugins
@@ -34,7 +34,7 @@ NOT_FOUND = NotApplicable(
 )
 
 
-def same_path_in_another_process(subject: Subject) -> Outcome:
+def same_path_in_another_process(subject: Subject) -> Answer:
     """The same seed and counted budget give the same run in another process."""
     found = keeps_no_state(subject)
     if found is not None:

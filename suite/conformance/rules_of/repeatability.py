@@ -4,7 +4,7 @@ from functools import lru_cache
 from itertools import combinations
 from typing import Any
 
-from suite.conformance.finding import Finding, NotApplicable, Outcome
+from suite.conformance.finding import Answer, Finding, NotApplicable
 from suite.conformance.subject import SEED, Subject, Trial
 
 VARIED = ("one wall", "narrow gap", "500 obstacles")
@@ -18,7 +18,7 @@ UNPLANNED = NotApplicable("not all runs end with a plan.")
 
 
 @lru_cache(maxsize=SUBJECTS)
-def same_seed_same_path(subject: Subject) -> Outcome:
+def same_seed_same_path(subject: Subject) -> Answer:
     """The same seed and counted budget give the same run, to the last bit."""
     hindrance = _hindrance(subject)
     if hindrance is not None:
@@ -35,7 +35,7 @@ def same_seed_same_path(subject: Subject) -> Outcome:
     return None
 
 
-def another_seed_another_stream(subject: Subject) -> Outcome:
+def another_seed_another_stream(subject: Subject) -> Answer:
     """Another seed gives another run, unless the planner is called deterministic: then the same."""
     found = same_seed_same_path(subject)
     if found is not None:
@@ -80,7 +80,7 @@ def _no_stream(seeds: tuple[int, ...], drew: bool) -> Finding:
 
 
 @lru_cache(maxsize=SUBJECTS)
-def keeps_no_state(subject: Subject) -> Outcome:
+def keeps_no_state(subject: Subject) -> Answer:
     """A planner that has run before, elsewhere, gives the same run as the very first one."""
     found = same_seed_same_path(subject)
     if found is not None:

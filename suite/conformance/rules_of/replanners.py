@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from functools import wraps
 
 from suite.conformance.drive import drive, ordinary_drive
-from suite.conformance.finding import Finding, NotApplicable, Outcome
+from suite.conformance.finding import Answer, Finding, NotApplicable
 from suite.conformance.rules_of.budgets import (
     ATTEMPTS,
     CHECKS,
@@ -31,7 +31,7 @@ def _for_replanners(rule: Rule) -> Rule:
     """A rule that says nothing of planners that plan afresh, or refuse to begin."""
 
     @wraps(rule)
-    def applied(subject: Subject) -> Outcome:
+    def applied(subject: Subject) -> Answer:
         if subject.planner_class.replanner is Planner.replanner:
             return AFRESH
         refused = _refused(subject)
@@ -47,7 +47,7 @@ def _refused(subject: Subject) -> str | None:
 
 
 @_for_replanners
-def replans_end_with_a_plan(subject: Subject) -> Outcome:
+def replans_end_with_a_plan(subject: Subject) -> Answer:
     """A replanner raises no exception and returns a Plan, at the beginning and at each update."""
     for trial in ordinary_drive(subject):
         wrong = trial.run.error or form_of(trial.run.returned)
@@ -62,7 +62,7 @@ def replans_end_with_a_plan(subject: Subject) -> Outcome:
 
 
 @_for_replanners
-def replans_suit_what_is_known(subject: Subject) -> Outcome:
+def replans_suit_what_is_known(subject: Subject) -> Answer:
     """It finds free paths from where the robot is; none where there is none; and then one again."""
     for trial in ordinary_drive(subject):
         wrong = _unsuitable(trial)
@@ -113,7 +113,7 @@ def _without_a_path(trials: Iterable[Trial]) -> list[Trial]:
 
 
 @_for_replanners
-def replans_keep_budgets(subject: Subject) -> Outcome:
+def replans_keep_budgets(subject: Subject) -> Answer:
     """Each update keeps the budgets that the planner says it keeps, and counts from zero."""
     most = {"generations": GENERATIONS, "checks": most_checks(CHECKS)}
     limits = {"generations": GENERATIONS, "checks": CHECKS}
@@ -149,7 +149,7 @@ def _unkept(trial: Trial, what: str, name: str) -> Finding:
 
 
 @_for_replanners
-def replans_repeat(subject: Subject) -> Outcome:
+def replans_repeat(subject: Subject) -> Answer:
     """The same seed gives the same sequence, also when another replanner is asked in between."""
     if subject.is_timed and not subject.planner_class.abilities.deterministic:
         return TIMED
@@ -176,7 +176,7 @@ def _difference(one: Iterable[Trial], other: Iterable[Trial], which: str) -> Fin
 
 
 @_for_replanners
-def replans_leave_things_alone(subject: Subject) -> Outcome:
+def replans_leave_things_alone(subject: Subject) -> Answer:
     """An update writes to no scene, and changes nothing of the process."""
     for trial in ordinary_drive(subject):
         changed = "the scene or the query" if trial.scene_changed else None

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from suite.conformance.finding import Finding, NotApplicable, Outcome
+from suite.conformance.finding import Answer, Finding, NotApplicable
 from suite.conformance.subject import Subject, Trial, form_of, optimum, times
 from suite.errors import ContractError
 from suite.geometry.tolerances import COST_CLAIM_RELATIVE
@@ -16,7 +16,7 @@ MORE = (10, 100)
 """Times an ordinary budget, for planners whose generations or checks do little."""
 
 
-def warms_up(subject: Subject) -> Outcome:
+def warms_up(subject: Subject) -> Answer:
     """A planner can be built, and its warm_up ends and raises nothing."""
     error = subject.warm_up.error
     if error is None:
@@ -28,7 +28,7 @@ def warms_up(subject: Subject) -> Outcome:
     )
 
 
-def runs_end_without_an_exception(subject: Subject) -> Outcome:
+def runs_end_without_an_exception(subject: Subject) -> Answer:
     """A run ends, and raises no exception, whatever the scene."""
 
     def judge(trial: Trial) -> Finding | None:
@@ -43,7 +43,7 @@ def runs_end_without_an_exception(subject: Subject) -> Outcome:
     return _first(subject, judge)
 
 
-def refuses_with_a_reason(subject: Subject) -> Outcome:
+def refuses_with_a_reason(subject: Subject) -> Answer:
     """What refuse returns is None, or a sentence."""
 
     def judge(trial: Trial) -> Finding | None:
@@ -59,7 +59,7 @@ def refuses_with_a_reason(subject: Subject) -> Outcome:
     return _first(subject, judge)
 
 
-def refuse_prepares_nothing(subject: Subject) -> Outcome:
+def refuse_prepares_nothing(subject: Subject) -> Answer:
     """What refuse finds out is not kept for plan: it is called outside the clock."""
 
     def judge(trial: Trial) -> Finding | None:
@@ -74,7 +74,7 @@ def refuse_prepares_nothing(subject: Subject) -> Outcome:
     return _first(subject, judge)
 
 
-def returns_a_plan(subject: Subject) -> Outcome:
+def returns_a_plan(subject: Subject) -> Answer:
     """A run returns a Plan that says solved with a path, infeasible or exhausted."""
 
     def judge(trial: Trial) -> Finding | None:
@@ -91,7 +91,7 @@ def returns_a_plan(subject: Subject) -> Outcome:
     return _first(subject, judge)
 
 
-def path_has_the_right_ends(subject: Subject) -> Outcome:
+def path_has_the_right_ends(subject: Subject) -> Answer:
     """A path leads from exactly the start to exactly the goal."""
 
     def judge(trial: Trial) -> Finding | None:
@@ -109,7 +109,7 @@ def path_has_the_right_ends(subject: Subject) -> Outcome:
     return _first(subject, judge)
 
 
-def path_is_free(subject: Subject) -> Outcome:
+def path_is_free(subject: Subject) -> Answer:
     """The referee accepts each path where there is one."""
 
     def judge(trial: Trial) -> Finding | None:
@@ -126,7 +126,7 @@ def path_is_free(subject: Subject) -> Outcome:
     return _first(subject, judge)
 
 
-def solves_what_is_trivial(subject: Subject) -> Outcome:
+def solves_what_is_trivial(subject: Subject) -> Answer:
     """It finds a path where the straight line is one."""
 
     def judge(trial: Trial) -> Finding | None:
@@ -150,7 +150,7 @@ def _is_without_a_path(trial: Trial) -> bool:
     return trial.refused or (trial.plan is not None and trial.plan.status == PlanStatus.EXHAUSTED)
 
 
-def says_that_there_is_no_path(subject: Subject) -> Outcome:
+def says_that_there_is_no_path(subject: Subject) -> Answer:
     """Where there is no path, it says infeasible or exhausted."""
 
     def judge(trial: Trial) -> Finding | None:
@@ -169,7 +169,7 @@ def says_that_there_is_no_path(subject: Subject) -> Outcome:
     return _first(subject, judge)
 
 
-def infeasible_is_true(subject: Subject) -> Outcome:
+def infeasible_is_true(subject: Subject) -> Answer:
     """It says infeasible only where there is no path."""
 
     def judge(trial: Trial) -> Finding | None:
@@ -185,7 +185,7 @@ def infeasible_is_true(subject: Subject) -> Outcome:
     return _first(subject, judge)
 
 
-def exact_is_exact(subject: Subject) -> Outcome:
+def exact_is_exact(subject: Subject) -> Answer:
     """A planner that is called exact finds the shortest path, or the proof that there is none."""
     if not subject.planner_class.abilities.exact:
         return NotApplicable("it is not called exact.")
@@ -208,7 +208,7 @@ def _finding_of_exactness(trial: Trial) -> Finding | None:
     )
 
 
-def improvements_agree_with_the_result(subject: Subject) -> Outcome:
+def improvements_agree_with_the_result(subject: Subject) -> Answer:
     """What it reports while it runs gets better, and the last of it is what it returns."""
     return _first(subject, _finding_of_reports)
 
@@ -259,7 +259,7 @@ def _disagreement(trial: Trial, reports: Sequence[Improvement]) -> str | None:
     return None
 
 
-def anytime_reports(subject: Subject) -> Outcome:
+def anytime_reports(subject: Subject) -> Answer:
     """A planner that is called anytime reports the paths that it finds."""
     if not subject.planner_class.abilities.anytime:
         return NotApplicable("it is not called anytime.")
@@ -276,7 +276,7 @@ def anytime_reports(subject: Subject) -> Outcome:
     return _first(subject, judge)
 
 
-def claimed_cost_is_the_length(subject: Subject) -> Outcome:
+def claimed_cost_is_the_length(subject: Subject) -> Answer:
     """The cost that it claims is the length that the referee measures (a warning)."""
 
     def judge(trial: Trial) -> Finding | None:

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 
-from suite.conformance.finding import Finding, Outcome
+from suite.conformance.finding import Answer, Finding
 from suite.conformance.subject import Subject, Trial
 from suite.conformance.surroundings import Surroundings
 
 
-def leaves_the_scene_alone(subject: Subject) -> Outcome:
+def leaves_the_scene_alone(subject: Subject) -> Answer:
     """A run writes to neither the scene nor the query."""
     return _first(
         subject,
@@ -17,7 +17,7 @@ def leaves_the_scene_alone(subject: Subject) -> Outcome:
     )
 
 
-def leaves_random_state_alone(subject: Subject) -> Outcome:
+def leaves_random_state_alone(subject: Subject) -> Answer:
     """A run neither draws from nor seeds the global generators of random and numpy."""
     return _around(
         subject,
@@ -27,7 +27,7 @@ def leaves_random_state_alone(subject: Subject) -> Outcome:
     )
 
 
-def leaves_the_folder_alone(subject: Subject) -> Outcome:
+def leaves_the_folder_alone(subject: Subject) -> Answer:
     """A run ends in the working directory in which it began."""
 
     def look(before: Surroundings, after: Surroundings) -> str:
@@ -38,7 +38,7 @@ def leaves_the_folder_alone(subject: Subject) -> Outcome:
     return _around(subject, look, "the working directory in which it began", mend)
 
 
-def leaves_the_environment_alone(subject: Subject) -> Outcome:
+def leaves_the_environment_alone(subject: Subject) -> Answer:
     """A run changes no environment variable."""
     return _around(
         subject,
@@ -48,7 +48,7 @@ def leaves_the_environment_alone(subject: Subject) -> Outcome:
     )
 
 
-def leaves_the_clock_alone(subject: Subject) -> Outcome:
+def leaves_the_clock_alone(subject: Subject) -> Answer:
     """A run does not set the recorder's clock to zero again."""
     return _first(
         subject,
