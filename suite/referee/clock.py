@@ -45,24 +45,10 @@ class Clock:
 
     @property
     def contended(self) -> bool:
-        """Whether the work waited for the processor, as :func:`waited` says."""
-        return waited(self.wall_s, self.cpu_s)
+        """Whether the work waited for the processor: its times are then longer than its own.
 
-
-def waited(wall_s: float, cpu_s: float) -> bool:
-    """Whether a computation waited for the processor: its times are then longer than its own.
-
-    One that sleeps, or reads files, looks the same from outside. So it is said of too many rather
-    than of too few. What a neighbour on the same core or memory slows down, no clock tells.
-
-    Parameters
-    ----------
-    wall_s, cpu_s : float
-        What it took, seconds.
-
-    Examples
-    --------
-    >>> waited(1.0, 0.98), waited(1.0, 0.5), waited(0.002, 0.001)
-    (False, True, False)
-    """
-    return wall_s > FACTOR * cpu_s + FLOOR_S
+        Work that sleeps, or reads files, looks the same from outside. So it is said of too many
+        rather than of too few. What a neighbour on the same core or memory slows down, no clock
+        tells.
+        """
+        return self.wall_s > FACTOR * self.cpu_s + FLOOR_S

@@ -25,7 +25,7 @@ planner), so there is no time step to choose.
 import gc
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
@@ -245,7 +245,7 @@ class _Run:
         changed = self._known is not None and known is not self._known
         self._known = known
         if not self.robot.settle(known):
-            self._note(Replan(self.robot.time, self.robot.place, changed, ENCLOSED))
+            self.replans.append(Replan(self.robot.time, self.robot.place, changed, ENCLOSED))
             self._pending = None
             self.robot.path = None
             self.courses.append(Course(self.robot.time, None))
@@ -291,11 +291,11 @@ class _Run:
         robot = self.robot
         query = Query(self._query.name, robot.place, self._query.goal)
         recorder = Recorder()
+        clock = Clock(recorder)
         returned: Any = None
         reason: str | None = None
         # The garbage on the heap is the simulation's: collecting it is not the planner's time.
         gc.disable()
-        clock = Clock(recorder)
         try:
             with clock:
                 returned = self._ask(known, query, self._budget, recorder)
@@ -304,57 +304,45 @@ class _Run:
             reason = traceback.format_exc(limit=-1).strip()
         gc.enable()
         self._ask = self._replanner.update
-        self._note(_judged(known, query, returned, reason, robot.time, changed, clock.wall_s))
+        asked = Replan(
+            robot.time, query.start, changed, PlanStatus.ERROR, reason, latency_s=clock.wall_s
+        )
+        self.replans.append(_judged(asked, known, query, returned))
         charge = clock.wall_s if self._settings.charge is Charge.MEASURED else 0.0
         return _Pending(robot.time + charge, self.replans[-1].path, [robot.place])
 
-    def _note(self, replan: Replan) -> None:
-        self.replans.append(replan)
 
+def _judged(asked: Replan, known: Scene, query: Query, returned: Any) -> Replan:
+    """What an answer is worth: a path only if the static referee finds it free in what is known.
 
-def _judged(
-    known: Scene,
-    query: Query,
-    returned: Any,
-    reason: str | None,
-    time: float,
-    changed: bool,
-    latency_s: float,
-) -> Replan:
-    """What a plan is worth: a path only if the static referee finds it free in what is known."""
-    plan, reason = _formed(returned, reason)
+    ``asked`` has the reason if there is no answer, for something was raised.
+    """
+    plan, reason, path = Plan(PlanStatus.ERROR), asked.reason, None
+    if reason is None:
+        try:
+            plan = plain_plan(returned)
+        except ContractError as error:
+            reason = str(error)
     status = plan.status
-    path = None
-    if status == PlanStatus.SOLVED:
+    if status is PlanStatus.SOLVED:
         verdict = judge(known, query, plan.path)
         if verdict.valid:
             path = np.array(plan.path, dtype=np.float64)
         else:
             status, reason = PlanStatus.INVALID, verdict.reason
     optimum = shortest_path(known, query).length
-    return Replan(
-        time=time,
-        place=query.start,
-        changed=changed,
+    return replace(
+        asked,
         status=str(status),
         reason=reason,
         path=path,
         cost=None if path is None else path_length(path),
         optimum=float(optimum) if np.isfinite(optimum) else None,
-        latency_s=latency_s,
         generations=plan.generations,
         checks=plan.checks,
         computed_checks=plan.computed_checks,
         details=plan.details,
     )
-
-
-def _formed(returned: Any, reason: str | None) -> tuple[Plan, str | None]:
-    """A plan in plain numbers, and the reason if there was none: what was raised, or its form."""
-    try:
-        return (Plan(PlanStatus.ERROR) if reason else plain_plan(returned)), reason
-    except ContractError as error:
-        return Plan(PlanStatus.ERROR), str(error)
 
 
 def _joining(place: NDArray[np.float64], pending: _Pending) -> list[NDArray[np.float64]]:

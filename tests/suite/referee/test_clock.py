@@ -80,10 +80,14 @@ def test_a_recorder_that_is_started_anew_is_told_and_shortens_no_time(machine):
     assert clock.wall_s == 2.0
 
 
-@pytest.mark.parametrize(("waits", "contended"), [(0.1, False), (1.0, True)])
-def test_work_that_waits_is_contended_and_a_tenth_does_not_count(machine, waits, contended):
+@pytest.mark.parametrize(
+    ("computes", "waits", "contended"), [(2.0, 0.1, False), (2.0, 1.0, True), (0.001, 0.001, False)]
+)
+def test_work_that_waits_is_contended_and_a_tenth_or_a_tick_does_not_count(
+    machine, computes, waits, contended
+):
     with Clock(Recorder()) as clock:
-        machine.compute(2.0)
+        machine.compute(computes)
         machine.wait(waits)
     assert clock.contended is contended
     assert not clock.restarted
