@@ -88,7 +88,7 @@ $(STUDIES:%=results-%): LEAVE := $(NO_ROWS) $(NO_PICTURES)
 results-ablation: LEAVE := $(NO_ROWS) --leave-out events --leave-out comparisons
 # Figures of the paper and of the study come out of these traces.
 results-resolution results-first-population: LEAVE := --leave-out paths $(NO_PICTURES)
-results-paper-dynamic: LEAVE := --leave-out paths
+results-paper-static results-paper-dynamic: LEAVE := --leave-out paths
 results-all-planners: LEAVE := $(NO_ROWS) --leave-out paper-pictures
 results-alignment results-ompl-tuning results-plus: LEAVE := $(NO_ROWS) --leave-out events $(NO_PICTURES)
 
