@@ -17,7 +17,7 @@ from tests.suite.conformance.broken_planners import (
     Remembers,
 )
 
-BROKEN = Path(__file__).parent / "broken_planners.py"
+BROKEN = Path(__file__).parents[1] / "broken_planners.py"
 
 
 def test_a_planner_with_settings_of_its_own_runs_there_with_them():
