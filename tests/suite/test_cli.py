@@ -145,7 +145,10 @@ def test_an_obstacle_that_comes_upon_a_waiting_robot_is_reported(kbga_bench, tmp
     assert "hit          by press at 3.00 s in (1.000, 3.000)" in kbga_bench(*simulate, code=1).out
 
 
-@pytest.mark.parametrize("scene", ["door", "unknown_obstacles", "moving-3"])
+@pytest.mark.parametrize(
+    "scene",
+    ["door", *(pytest.param(s, marks=pytest.mark.slow) for s in ("unknown_obstacles", "moving-3"))],
+)
 def test_two_processes_give_the_same_trajectory_bit_for_bit_when_planning_is_free(scene):
     wanted = ("simulate", scene, *SIMULATE[2:], "--seed", 3, "--format", "json")
     one, same = (json.loads(in_own_process(*wanted).out) for _ in range(2))
@@ -464,7 +467,7 @@ def test_the_same_store_gives_the_same_bytes(kbga_bench, filled, tmp_path):
         assert file.read_bytes() == other.read_bytes(), file.name
 
 
-@pytest.mark.parametrize("kind", ["pdf", "svg"])
+@pytest.mark.parametrize("kind", [pytest.param("pdf", marks=pytest.mark.slow), "svg"])
 def test_figures_of_results_are_vectors_if_asked_for_and_the_same_bytes_each_time(
     kbga_bench, filled, tmp_path, kind
 ):

@@ -16,7 +16,22 @@ FEWER = {"extremitypathfinder": 24}
 """Rules kept by one that refuses some scenes: then no rule about repeated runs applies."""
 
 
-@pytest.mark.parametrize("name", OURS)
+SAMPLE = {
+    "kbga",
+    "kbga-plus",
+    "plain-ga",
+    "visibility-graph",
+    "grid-astar",
+    "ompl-rrtstar",
+    "ompl-prm",
+}
+"""One of each kind. `make test-slow` examines the others, and so does `kbga-bench check`."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [n if n in SAMPLE else pytest.param(n, marks=pytest.mark.slow) for n in OURS],
+)
 def test_it_breaks_no_rule_and_needs_no_warning(name):
     planner_class = load_planner(name)
     # OMPL's planners without a budget run for a second, which would be most of the test.
@@ -28,3 +43,4 @@ def test_it_breaks_no_rule_and_needs_no_warning(name):
 
 def test_there_are_planners_to_examine():
     assert {"kbga", "plain-ga", "visibility-graph", "ompl-rrtstar"} <= set(OURS)
+    assert set(OURS) >= SAMPLE
