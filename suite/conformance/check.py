@@ -21,16 +21,13 @@ from suite.conformance.subject import Rule, Subject
 from suite.errors import PluginError
 from suite.plugins.discovery import load_planner, planner_names
 from suite.plugins.settings import make_settings
-from suite.processes.family import kill_family
+from suite.processes.family import REAP_S, kill_family
 
 LIMIT_S = 30.0
 """What one rule may take, seconds: fifty times what it takes with a planner that is quick."""
 
 WARM_UP_S = 300.0
 """What it may take to import a planner and warm it up, compilation included, as in a matrix."""
-
-REAP_S = 5.0
-"""What a killed process may take to be gone."""
 
 LOADING = -1
 """The plugin is imported; the rules are counted from 0."""

@@ -18,11 +18,8 @@ from typing import Any
 from suite.errors import HarnessError
 from suite.harness.child import run_in_child
 from suite.harness.fork_server import Warmth
-from suite.processes.family import kill_children, kill_family, kill_group
+from suite.processes.family import REAP_S, kill_children, kill_family, kill_group
 from suite.processes.multiprocessing_private import forget_server, main_module, server_pid
-
-REAP_S = 5.0
-"""What a killed process may take to be gone; longer only in the kernel's uninterruptible sleep."""
 
 ANSWER_S = 0.5
 """A fork server that takes longer to start a process is still warming up."""

@@ -21,6 +21,7 @@ from suite.harness.patience import Patience
 from suite.harness.provenance import provenance
 from suite.planner import PlanStatus
 from suite.store.record import Cell, RunRecord, canonical_json
+from suite.store.row_names import rows_in_words
 from suite.store.write import Store
 
 ORDER_SEED = 2003
@@ -125,9 +126,10 @@ class Progress:
         if self.repeated:
             verb = "is" if self.contended == 1 else "are"
             still = f"{self.contended or 'none'} still {verb}"
-            return f"{waited} {_rows(self.repeated)} had no core and ran again; {still} contended."
+            rows = rows_in_words(self.repeated)
+            return f"{waited} {rows} had no core and ran again; {still} contended."
         if self.contended:
-            rows = _rows(self.contended)
+            rows = rows_in_words(self.contended)
             return f"{waited} {rows} had no core to run on: see `run --patience`."
         return waited
 
@@ -308,10 +310,6 @@ def warmth_for(cells: Iterable[Cell], limits: Limits) -> Warmth:
     return Warmth(
         tuple(sorted(planners)), tuple(sorted(queries)), limits.warm_up_s, limits.memory_bytes
     )
-
-
-def _rows(count: int) -> str:
-    return "1 row" if count == 1 else f"{count} rows"
 
 
 def _left_in_words(left: int) -> str:

@@ -17,6 +17,9 @@ import psutil
 PR_SET_CHILD_SUBREAPER = 36
 KILL_POLL_S = 0.002
 
+REAP_S = 5.0
+"""What a killed process may take to be gone; longer only in the kernel's uninterruptible sleep."""
+
 
 def adopt_orphans() -> None:
     """Become the parent of descendants that lose theirs, where the system has that (Linux)."""

@@ -16,6 +16,7 @@ from pathlib import Path
 from suite.errors import StoreError
 from suite.store.read import read_runs, stored_cell
 from suite.store.record import Cell
+from suite.store.row_names import rows_in_words
 from suite.store.schema import BELONGINGS, columns_of
 from suite.store.write import Store
 
@@ -53,13 +54,13 @@ class Merged:
         expected = [cell for cell in self.conflicts if cell.time_counts]
         if expected:
             lines.append(
-                f"  {_rows(len(expected))} came out otherwise, as is to be expected where time "
-                f"counts: {_by_planner(expected)}."
+                f"  {rows_in_words(len(expected))} came out otherwise, as is to be expected where "
+                f"time counts: {_by_planner(expected)}."
             )
         if self.alarming:
             lines.append(
-                f"  {_rows(len(self.alarming))} should be the same bit for bit and came out "
-                "otherwise. Another machine, version or plugin?"
+                f"  {rows_in_words(len(self.alarming))} should be the same bit for bit and came "
+                "out otherwise. Another machine, version or plugin?"
             )
             lines += _named(self.alarming)
         if self.conflicts:
@@ -106,10 +107,6 @@ def _merge(store: Store, source: Path) -> Merged:
         connection.execute("INSERT OR IGNORE INTO main.conflicts SELECT * FROM other.conflicts")
         added = _add_missing(connection)
     return Merged(source, added, common - len(conflicts), tuple(conflicts.values()))
-
-
-def _rows(count: int) -> str:
-    return "1 row" if count == 1 else f"{count} rows"
 
 
 def _by_planner(cells: Sequence[Cell]) -> str:

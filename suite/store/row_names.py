@@ -101,3 +101,8 @@ def _all_of(values: pd.Series) -> str:
     if values.name == "seed" and len(found) == max(found) - min(found) + 1 > 2:
         return f"{min(found)} to {max(found)}"
     return ", ".join(map(str, found))
+
+
+def rows_in_words(count: int) -> str:
+    """A number of rows, as one says it: "1 row", "2 rows"."""
+    return "1 row" if count == 1 else f"{count} rows"
