@@ -1,0 +1,228 @@
+"""Whether it holds anywhere: random building sites at places on earth: `make sites`.
+
+python -m tests.perf.sites results/sites [--draws 1000] [--planned 3]
+
+Each site is made at its place, and once more with its corner in the origin, moved without rounding.
+What must hold: no traceback, nothing refused, no obstacle lost, the same optimum, and one verdict
+by kernel, referee and shapely. Shapely judges in the coordinates of the origin, by the polygons as
+they were drawn and not as our arrangement has them.
+"""
+
+import argparse
+import sys
+import traceback
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from zlib import crc32
+
+import numpy as np
+import pandas as pd
+import shapely
+from numpy.typing import NDArray
+
+from suite.errors import SceneError
+from suite.geometry.kernels import first_collision
+from suite.geometry.tolerances import GRID
+from suite.referee.path import INTERIORS_MEET, Referee
+from suite.report.formats import render
+from suite.report.kinds import TableFormat
+from suite.report.table import Table
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import Query, Scene, SceneWarning, make_scene
+from tests.sites import PLACES, ROOMS, Ends, Site, draw_site, placed
+
+SEGMENTS = 20
+"""Random segments of each site on which kernel, referee and shapely must agree."""
+
+WORST_RELATIVE = 1e-6
+"""How far the optimum at a place may lie from that at the origin."""
+
+
+@dataclass(slots=True)
+class Findings:
+    """What was found of the sites of one place and one size.
+
+    draws : sites.
+    refused : of them, by an error with words; each is one that should have been a scene.
+    tracebacks : of them, by any other error.
+    lost : sites in which a part of an obstacle is not closed.
+    segments, disagreements : compared between kernel, referee and shapely; not the same.
+    worst : largest relative difference of an optimum from that at the origin.
+    other : sites in which a query has a path here and none at the origin, or the other way round.
+    messages : of what went wrong.
+    """
+
+    draws: int = 0
+    refused: int = 0
+    tracebacks: int = 0
+    lost: int = 0
+    segments: int = 0
+    disagreements: int = 0
+    worst: float = 0.0
+    other: int = 0
+    messages: list[str] = field(default_factory=list)
+
+    @property
+    def holds(self) -> bool:
+        """Whether all is as it must be."""
+        faults = (self.refused, self.tracebacks, self.lost, self.disagreements, self.other)
+        return not any(faults) and self.worst <= WORST_RELATIVE
+
+
+def sites(place: str, room: str, draws: int) -> Iterator[Site]:
+    """The random sites of a place and a size, the same in each call."""
+    rng = np.random.default_rng([0, crc32(f"{place}/{room}".encode())])
+    return (placed(draw_site(rng), place, room) for _ in range(draws))
+
+
+def as_scene(site: Site) -> Scene:
+    """Make a scene of a site; what crosses the border is cut there."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SceneWarning)
+        return make_scene("site", site.room, site.buildings, site.queries)
+
+
+def examined(place: str, room: str, draws: int) -> Findings:
+    """What is found of so many sites."""
+    found = Findings()
+    for number, site in enumerate(sites(place, room, draws)):
+        found.draws += 1
+        try:
+            _examine(site, found, np.random.default_rng(number))
+        except SceneError as error:
+            found.refused += 1
+            found.messages.append(f"{place}, {room}, site {number}: {error}")
+        except Exception as error:
+            where = traceback.extract_tb(error.__traceback__)[-1]
+            found.tracebacks += 1
+            found.messages.append(
+                f"{place}, {room}, site {number}: {type(error).__name__}: {error} "
+                f"in {where.name}, {Path(where.filename).name}"
+            )
+    return found
+
+
+def _examine(site: Site, found: Findings, rng: np.random.Generator) -> None:
+    twin = site.at_origin()
+    scene, origin = as_scene(site), as_scene(twin)
+    judges = _Judges(scene, site, twin)
+    if judges.has_lost():
+        found.lost += 1
+        found.messages.append(f"lost an obstacle of {site.buildings}")
+    paths = []
+    for query, same in zip(scene.queries, origin.queries, strict=True):
+        here, there = shortest_path(scene, query), shortest_path(origin, same)
+        if (here.path is None) != (there.path is None):
+            found.other += 1
+        elif here.path is not None:
+            found.worst = max(found.worst, abs(here.length / there.length - 1.0))
+            paths.append(here.path)
+    for path in (*paths, *_segments(scene, site, rng)):
+        found.segments += 1
+        found.disagreements += not judges.agree(path)
+
+
+def _segments(
+    scene: Scene, site: Site, rng: np.random.Generator
+) -> list[NDArray[np.float64]]:
+    """Random segments: half of them from anywhere, half of them from corners of buildings."""
+    low, high = np.reshape(scene.bounds, (2, 2))
+    corners = shapely.get_coordinates(site.buildings)
+    ends = rng.uniform(low, high, (SEGMENTS, 2, 2))
+    ends[::2, 0] = corners[rng.integers(len(corners), size=len(ends[::2]))]
+    return [segment for segment in ends if np.all((low <= segment) & (segment <= high))]
+
+
+class _Judges:
+    """Kernel, referee and shapely, on one site.
+
+    Shapely knows what is surely closed and what is surely free, but for the width by which the
+    arrangement may move a wall; in between it has no opinion.
+    """
+
+    def __init__(self, scene: Scene, site: Site, twin: Site) -> None:
+        self._scene = scene
+        self._corner = site.corner
+        self._referee = Referee(scene)
+        coordinates = shapely.get_coordinates([site.room, *site.buildings])
+        self._width = 2.0 * max(GRID, float(np.spacing(np.abs(coordinates).max())))
+        around = twin.room.buffer(0.2 * twin.room.length).difference(twin.room)
+        drawn = shapely.union_all([p.intersection(twin.room) for p in twin.buildings])
+        self._drawn = drawn
+        closed = drawn.union(around)
+        self._inner = closed.buffer(-self._width, join_style="mitre")
+        self._outer = closed.buffer(self._width, join_style="mitre")
+        shapely.prepare(self._inner)
+        shapely.prepare(self._outer)
+
+    def has_lost(self) -> bool:
+        """Whether something that was drawn, and lies in the room, is not closed."""
+        solid = shapely.transform(self._scene.arrangement.solid, lambda xy: xy - self._corner)
+        left = self._drawn.difference(solid.buffer(0.0))
+        return not left.buffer(-self._width).is_empty
+
+    def agree(self, path: NDArray[np.float64]) -> bool:
+        """Whether all have one opinion of a path, but for those that have none."""
+        query = Query("drawn", path[0], path[-1])
+        by_kernel = bool(first_collision(path, self._scene.arrays) < 0)
+        by_referee = self._referee.judge(query, path).valid
+        line = shapely.LineString(path - self._corner)
+        if shapely.relate_pattern(self._inner, line, INTERIORS_MEET):
+            return not by_kernel and not by_referee
+        if not self._outer.intersects(line):
+            return by_kernel and by_referee
+        return by_kernel == by_referee
+
+
+def table(findings: dict[tuple[str, str], Findings]) -> Table:
+    """A row for each place and size."""
+    hold = sum(found.holds for found in findings.values())
+    rows = [
+        {
+            "place": place,
+            "room": room,
+            "draws": found.draws,
+            "refused": found.refused,
+            "tracebacks": found.tracebacks,
+            "obstacle lost": found.lost,
+            "path or none": found.other,
+            "worst error of an optimum": f"{found.worst:.1e}",
+            "paths and segments": found.segments,
+            "disagreements": found.disagreements,
+        }
+        for (place, room), found in findings.items()
+    ]
+    return Table(
+        "sites",
+        f"Random building sites: {hold} of {len(findings)} places and sizes hold",
+        pd.DataFrame(rows),
+        "Each site is made at its place and, moved without rounding, at the origin. Refused and "
+        "tracebacks: sites that could not be made. Path or none: queries with a path at one of the "
+        "two only. Error: relative, of the optimum, to that at the origin. Disagreements: paths and "
+        "random segments on which kernel, referee and shapely (in the origin's coordinates, by the "
+        "polygons as drawn) have two opinions.",
+    )
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Examine, write the tables and print them."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--draws", type=int, default=1000, help="of each place and size")
+    given = parser.parse_args(arguments)
+    findings = {}
+    for place in PLACES:
+        for room in ROOMS:
+            findings[place, room] = found = examined(place, room, given.draws)
+            for message in found.messages[:3]:
+                sys.stderr.write(f"{message}\n")
+    text = "".join(f"{render(t, TableFormat.MARKDOWN)}\n" for t in (table(findings),))
+    given.folder.mkdir(parents=True, exist_ok=True)
+    (given.folder / "sites.md").write_text(text, encoding="utf-8")
+    sys.stdout.write(text)
+
+
+if __name__ == "__main__":
+    main()
