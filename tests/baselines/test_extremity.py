@@ -8,8 +8,17 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from baselines.extremity import ExtremityPlanner, ExtremitySettings, pinches, regions_of
+from baselines.extremity import (
+    FINEST,
+    ExtremityPlanner,
+    ExtremitySettings,
+    finer_places,
+    longer_side,
+    pinches,
+    regions_of,
+)
 from suite.planner import Budget, Plan, PlanStatus, Recorder
+from suite.referee.path import judge
 from suite.scenes.catalogue import load_scene
 from suite.scenes.exact import shortest_path
 from suite.scenes.scene import Query, Scene, make_scene
@@ -33,9 +42,14 @@ def agrees_or_is_refused(scene: Scene, seed: int) -> None:
     free = points[~shapely.intersects_xy(scene.arrangement.solid, points)]
     assume(len(free) > 1)
     scene = replace(scene, queries=(Query("open", *free[:2]),))
-    pinched = [p for region in regions_of(scene, scene.query()) for p in pinches(region)]
+    width = FINEST * longer_side(scene)
+    kept_from_it = [
+        place
+        for region in regions_of(scene, scene.query())
+        for place in (*pinches(region), *finer_places(region, width))
+    ]
     refusal = ExtremityPlanner().refuse(scene, scene.query(), Budget())
-    assert (refusal is not None) == (pinched != [])
+    assert (refusal is not None) == (kept_from_it != [])
     if refusal is not None:
         return
     wanted, made = shortest_path(scene, scene.query()), plan(scene)
@@ -143,3 +157,58 @@ def test_a_pinch_in_another_piece_of_free_space_refuses_nothing():
     inner = [shapely.box(6.5, 6.5, 7, 7), shapely.box(7, 7, 7.5, 7.5)]
     scene = scene_of([ring, *inner])
     assert ExtremityPlanner().refuse(scene, scene.query(), Budget()) is None
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_yard_far_from_the_origin_is_the_same_yard(seed):
+    # Numbers of a map: its tolerances are shares of the coordinates, here of 50 m.
+    rng = np.random.default_rng(seed)
+    yard = [shapely.box(*low, *(low + rng.uniform(3, 20, 2))) for low in rng.uniform(5, 60, (8, 2))]
+    at = np.array([500_000.0, 4_600_000.0])
+
+    def scene_at(corner) -> Scene:
+        room, *walls = (
+            shapely.transform(polygon, lambda xy: np.round(xy, 3) + corner)
+            for polygon in (shapely.box(0, 0, 90, 90), *yard)
+        )
+        return make_scene("yard", room, walls, (corner + 1.0, corner + 89.0))
+
+    there, origin = scene_at(at), scene_at(np.zeros(2))
+    assert ExtremityPlanner().refuse(there, there.query(), Budget()) is None
+    wanted = shortest_path(there, there.query()).length
+    assert plan(there).claimed_cost == pytest.approx(wanted, rel=1e-9)
+    assert wanted == pytest.approx(shortest_path(origin, origin.query()).length, rel=1e-9)
+
+
+def passage(width: float, start=(1, 5), goal=(9, 4)) -> Scene:
+    return scene_of([shapely.box(4, 1, 5, 4.5), shapely.box(4, 4.5 + width, 5, 9)], start, goal)
+
+
+@pytest.mark.parametrize("width", [1e-3, 1e-4, 1e-5, 2e-6])
+def test_it_goes_through_a_narrow_passage_or_past_it_whichever_is_shorter(width):
+    for start, goal in [((1, 5), (9, 4)), ((1, 8.5), (9, 8)), ((3, 4.4), (6, 2))]:
+        scene = passage(width, start, goal)
+        assert ExtremityPlanner().refuse(scene, scene.query(), Budget()) is None
+        wanted = shortest_path(scene, scene.query()).length
+        assert plan(scene).claimed_cost == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize("width", [9e-7, 1e-8])
+def test_a_passage_that_it_can_not_see_is_refused_with_the_place(width):
+    scene = passage(width)
+    said = ExtremityPlanner().refuse(scene, scene.query(), Budget())
+    assert said == (
+        "extremitypathfinder can't tell apart what lies within 1e-06 m in a room of this size, "
+        "as at (4, 4.5). Close such passages, or widen them."
+    )
+
+
+@pytest.mark.parametrize("width", [1e-7, 1e-8, 2e-9])
+def test_a_robot_that_asks_all_the_same_gets_a_free_path_or_none_and_no_traceback(width):
+    for start, goal in [((1, 5), (9, 4)), ((1, 8.5), (9, 8)), ((3, 4.4), (6, 2))]:
+        scene = passage(width, start, goal)
+        made = plan(scene)
+        if made.path is None:
+            assert made.status is PlanStatus.EXHAUSTED
+        else:
+            assert judge(scene, scene.query(), made.path).valid
