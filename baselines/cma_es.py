@@ -2,7 +2,8 @@
 
 Hansen and Ostermeier (2001); restarts with a population twice as large after Auger and Hansen
 (2005). What one would try first with an optimiser from the shelf: no knowledge of obstacles but
-the length of the path that lies in them. Metres.
+the length of the path that lies in them. Metres; the optimiser itself sees genes and costs in rooms
+of side 0.5 to 1.
 """
 
 from dataclasses import dataclass, fields
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from baselines.ends import ends_are_free
 from baselines.limits import time_is_over
+from baselines.units import unit_of
 from baselines.visibility_graph import tiny_scene
 from suite.errors import PluginError
 from suite.geometry.kernels import (
@@ -26,7 +28,6 @@ from suite.geometry.kernels import (
     ObstacleArrays,
     first_collision,
 )
-from suite.geometry.tolerances import GRID
 from suite.jit import kernel
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
 from suite.scenes.scene import Query, Scene
@@ -42,6 +43,10 @@ LARGEST_SEED = 2**31 - 1
 
 FALL = 1.0 - 1e-4
 """A cost that falls by less stagnates."""
+
+TOUCH = 1e-11
+"""Share of a path that may lie inside obstacles by rounding, where it touches them: worth an exact
+check."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +154,10 @@ class Search:
         self.checks = 0
         self._arrays = scene.arrays
         self._ends = np.array([query.start, query.goal])
-        self._bounds = np.tile(np.reshape(scene.bounds, (2, 2)).T, (settings.waypoints, 1))
+        # The package takes steps beyond 1e4 for divergence, and has other fixed tolerances.
+        self._unit = unit_of(scene)
+        bounds = np.reshape(scene.bounds, (2, 2)).T / self._unit
+        self._bounds = np.tile(bounds, (settings.waypoints, 1))
         self._settings = settings
         self._budget = budget
         self._time_is_over = time_is_over(budget, recorder)
@@ -175,7 +183,8 @@ class Search:
             if self._is_spent():
                 return None
             genes = cma.ask()
-            solutions.append((genes, self._cost(genes)))
+            cost = self._cost(self._unit * genes)
+            solutions.append((genes, cost / self._unit))
         return solutions
 
     def is_over(self) -> bool:
@@ -196,7 +205,7 @@ class Search:
         settings = self._settings
         low, high = self._bounds.T
         share = np.linspace(0.0, 1.0, settings.waypoints + 2)[1:-1, None]
-        line = (self._ends[0] + share * (self._ends[1] - self._ends[0])).ravel()
+        line = (self._ends[0] + share * (self._ends[1] - self._ends[0])).ravel() / self._unit
         size = settings.population_size or 4 + int(3 * np.log(len(low)))
         return CMA(
             mean=line if restart == 0 else rng.uniform(low, high),
@@ -206,12 +215,12 @@ class Search:
             population_size=size * 2**restart,
         )
 
-    def _cost(self, genes: NDArray[np.float64]) -> float:
-        """Cost of a path; if it is free and the best, it is kept and reported."""
-        path = np.vstack([self._ends[0], genes.reshape(-1, 2), self._ends[1]])
+    def _cost(self, waypoints: NDArray[np.float64]) -> float:
+        """Cost of a path, metres; if it is free and the best, it is kept and reported."""
+        path = np.vstack([self._ends[0], waypoints.reshape(-1, 2), self._ends[1]])
         length, inside = lengths(path, self._arrays)
         self.checks += len(path) - 1
-        if length < self.best_cost and inside <= GRID:
+        if length < self.best_cost and inside <= TOUCH * length:
             self._keep_if_free(path, length)
         return float(length + self._settings.penalty * inside)
 

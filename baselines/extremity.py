@@ -18,6 +18,7 @@ from shapely.geometry.polygon import orient
 
 from baselines.ends import ends_are_free
 from baselines.limits import time_is_over
+from baselines.units import longer_side, unit_above
 from baselines.visibility_graph import tiny_scene
 from suite.errors import PluginError
 from suite.geometry.kernels import first_collision
@@ -217,12 +218,6 @@ def width_of(scene: Scene) -> float:
     return max(FINEST * longer_side(scene), GRID)
 
 
-def longer_side(scene: Scene) -> float:
-    """Of the room's box, metres."""
-    xmin, ymin, xmax, ymax = scene.bounds
-    return float(max(xmax - xmin, ymax - ymin))
-
-
 def pinches(region: Polygon) -> list[tuple[float, float]]:
     """The points in which the outline and the holes of a region meet each other, metres.
 
@@ -286,14 +281,13 @@ class _Frame:
     def __init__(self, region: Polygon) -> None:
         xmin, ymin, xmax, ymax = region.bounds
         self._corner = np.array([xmin, ymin])
-        # A power of two: the scaling rounds nothing.
-        self._side = 2.0 ** np.ceil(np.log2(max(xmax - xmin, ymax - ymin)))
+        self._unit = unit_above(max(xmax - xmin, ymax - ymin))
         self._drawn: dict[tuple[float, float], tuple[float, float]] = {}
 
     def points(self, xy: ArrayLike) -> list[tuple[float, float]]:
         """Points (n, 2), metres, in the unit square."""
         drawn = np.asarray(xy, dtype=np.float64)
-        unit = [(x, y) for x, y in ((drawn - self._corner) / self._side).tolist()]
+        unit = [(x, y) for x, y in ((drawn - self._corner) / self._unit).tolist()]
         self._drawn.update(zip(unit, ((x, y) for x, y in drawn.tolist()), strict=True))
         return unit
 

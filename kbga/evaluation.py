@@ -10,6 +10,7 @@ import numpy as np
 from kbga.counter import COMPUTED, OUT_OF_QUESTIONS, may_ask
 from kbga.encoding import MAX_HITS, Population, distance
 from kbga.memory import COUNT, FIRST_HIT, ROW, UNMEASURED, Memory, key_of, slot_of
+from suite.geometry.arrangement import FRAME_MARGIN
 from suite.geometry.kernels import (
     AFTER,
     FIRST_CONTACT,
@@ -26,15 +27,33 @@ from suite.geometry.kernels import (
     pinch_at,
     segment_slips_through,
 )
+from suite.geometry.tolerances import GRID
 from suite.jit import inlined_kernel, kernel
 
-LEAST_DEPTH = 1e-6
-"""Depth of a collision that no shift measures, such as slipping through a pinch point, metres: a
-segment is feasible if and only if its depth is zero."""
+HAIR = 1e-8
+"""Share of the room's longer side below which a distance is rounding: 1e-6 m in 100 m."""
 
-ON_LINE = 1e-6
-"""Distance from a segment's line below which a contact with the border lies on it, not on a side,
-metres: a slanted border is met only up to rounding."""
+ROUNDING = 2.0**-50
+"""Share of the largest coordinate, four units in its last place: far from the origin, rounding is
+coarser than a small room's share."""
+
+SIDES_OF_FRAME = 1.0 + 2.0 * FRAME_MARGIN
+"""Longer side of the frame's box by that of the room."""
+
+
+@inlined_kernel
+def hair(arrays: ObstacleArrays) -> float:
+    """Metres below which a distance in this scene is rounding.
+
+    The depth of a collision that no shift measures, such as slipping through a pinch point: a
+    segment is feasible if and only if its depth is zero. And the distance from a segment's line
+    below which a contact with the border lies on it, not on a side: a slanted border is met only up
+    to rounding, and to the grid of the arrangement.
+    """
+    xmin, ymin = arrays.tree[0, XMIN], arrays.tree[0, YMIN]
+    xmax, ymax = arrays.tree[0, XMAX], arrays.tree[0, YMAX]
+    share = HAIR * (max(xmax - xmin, ymax - ymin) / SIDES_OF_FRAME)
+    return max(share, 2.0 * GRID, ROUNDING * max(-xmin, -ymin, xmax, ymax))
 
 
 @inlined_kernel
@@ -83,12 +102,15 @@ def _dead_ends(
     contacts: np.ndarray,
     first: int,
     last: int,
+    width: float,
 ) -> tuple[bool, bool, bool]:
     """Where a group is joined to the border: left of a segment's line, right, along the segment.
 
     A joint that the line crosses lies ahead of the segment or behind it, and in no shift's way. So
     does one on the line that the segment does not run along. (One that the segment itself crosses
     leads into the frame, which has a depth of its own.)
+
+    width : distance below which a contact lies on the line, metres.
     """
     left = False
     right = False
@@ -98,11 +120,11 @@ def _dead_ends(
         qx, qy = contacts[e, 2] - ax, contacts[e, 3] - ay
         h, g = py * ux - px * uy, qy * ux - qx * uy
         low, high = min(h, g), max(h, g)
-        left |= low >= -ON_LINE and high > ON_LINE
-        right |= high <= ON_LINE and low < -ON_LINE
-        if low >= -ON_LINE and high <= ON_LINE:
+        left |= low >= -width and high > width
+        right |= high <= width and low < -width
+        if low >= -width and high <= width:
             t, w = px * ux + py * uy, qx * ux + qy * uy
-            along |= max(t, w) > ON_LINE and min(t, w) < span - ON_LINE
+            along |= max(t, w) > width and min(t, w) < span - width
     return left, right, along
 
 
@@ -119,29 +141,32 @@ def escape_distance(
     that runs along the border itself, in the slit below the group, has the dead end under it: only
     the farther side leads out. The frame lies on both sides of every segment.
     """
+    least = hair(arrays)
     span = distance(ax, ay, bx, by)
     if span == 0.0:
         # No direction to be square to: the way out of the group's box.
         xmin, ymin = arrays.groups[group, XMIN], arrays.groups[group, YMIN]
         xmax, ymax = arrays.groups[group, XMAX], arrays.groups[group, YMAX]
-        return max(LEAST_DEPTH, min(ax - xmin, xmax - ax, ay - ymin, ymax - ay))
+        return max(least, min(ax - xmin, xmax - ax, ay - ymin, ymax - ay))
     ux, uy = (bx - ax) / span, (by - ay) / span
     first = int(arrays.groups[group, FIRST_EDGE])
     last = int(arrays.groups[group, LAST_EDGE])
     left, right = _reach(ax, ay, ux, uy, span, arrays.boundary, first, last)
     first = int(arrays.groups[group, FIRST_CONTACT])
     last = int(arrays.groups[group, LAST_CONTACT])
-    dead_left, dead_right, slit = _dead_ends(ax, ay, ux, uy, span, arrays.contacts, first, last)
+    dead_left, dead_right, slit = _dead_ends(
+        ax, ay, ux, uy, span, arrays.contacts, first, last, least
+    )
     is_frame = group == arrays.groups.shape[0] - 1
     if is_frame or (dead_left and dead_right):
-        return max(LEAST_DEPTH, left - right)
+        return max(least, left - right)
     if dead_left:
-        return max(LEAST_DEPTH, -right)
+        return max(least, -right)
     if dead_right:
-        return max(LEAST_DEPTH, left)
+        return max(least, left)
     if slit:
-        return max(LEAST_DEPTH, left, -right)
-    return max(LEAST_DEPTH, min(left, -right))
+        return max(least, left, -right)
+    return max(least, min(left, -right))
 
 
 @kernel
@@ -316,7 +341,7 @@ def _depth_at_pinches(nodes: np.ndarray, i: int, k: int, arrays: ObstacleArrays)
     if arrays.pinches.shape[0] > 0 and _is_closed_by_pinch(
         nodes, i, k, arrays.pinches, arrays.ways
     ):
-        return LEAST_DEPTH
+        return hair(arrays)
     return 0.0
 
 

@@ -22,7 +22,8 @@ from baselines.limits import time_is_over
 from baselines.ompl.callbacks import way_s
 from baselines.ompl.collision import ExactCollision, state_checker
 from baselines.ompl.settings import OmplSettings, apply
-from baselines.ompl.units import metres, tables_in, unit_of
+from baselines.ompl.units import metres, tables_in
+from baselines.units import unit_of
 from baselines.visibility_graph import tiny_scene
 from suite.geometry.kernels import first_collision
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder

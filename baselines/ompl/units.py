@@ -18,21 +18,6 @@ from suite.scenes.scene import Scene
 Tables = tuple[NDArray[np.float64], ...]
 
 
-def unit_of(scene: Scene) -> float:
-    """Metres that are 1 in OMPL's coordinates: the power of two above the room's longer side.
-
-    Examples
-    --------
-    >>> import shapely
-    >>> from suite.scenes.scene import make_scene
-    >>> make = lambda side: make_scene("room", shapely.box(0, 0, side, 9), [], ((1, 1), (2, 2)))
-    >>> unit_of(make(100)), unit_of(make(128)), unit_of(make(3000))
-    (128.0, 128.0, 4096.0)
-    """
-    xmin, ymin, xmax, ymax = scene.bounds
-    return float(2.0 ** np.ceil(np.log2(max(xmax - xmin, ymax - ymin))))
-
-
 def tables_in(unit: float, scene: Scene) -> Tables:
     """Make the tables that the collision kernel reads, in units instead of metres."""
     arrays = scene.arrays

@@ -14,7 +14,7 @@ from suite.jit import kernel
 _COLUMNS = (1, 1, 0, -1, -1, -1, 0, 1)
 _ROWS = (0, 1, 1, 1, 0, -1, -1, -1)
 
-# A gain below this is rounding, and a search that followed it need not end. Metres.
+# A gain below this is rounding, and a search that followed it need not end. Share of a unit.
 _LEAST_GAIN = 1e-9
 
 
@@ -39,7 +39,7 @@ def _move(
     column, row = nodes[i, k].gene % columns, nodes[i, k].gene // columns
     trial[0, 0] = nodes[i, k - 1]
     trial[0, 2] = nodes[i, k + 1]
-    limit = nodes[i, k - 1].length + nodes[i, k].length - _LEAST_GAIN
+    limit = nodes[i, k - 1].length + nodes[i, k].length - _LEAST_GAIN * lattice.unit
     count = 0
     for neighbour in range(8):
         new_column = column + step * _COLUMNS[neighbour]

@@ -13,10 +13,10 @@ from baselines.extremity import (
     ExtremityPlanner,
     ExtremitySettings,
     finer_places,
-    longer_side,
     pinches,
     regions_of,
 )
+from baselines.units import longer_side
 from suite.planner import Budget, Plan, PlanStatus, Recorder
 from suite.referee.path import judge
 from suite.scenes.catalogue import load_scene

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from baselines.ompl.oneshot import FMTPlanner, RRTConnectPlanner, RRTConnectSettings
 from baselines.ompl.roadmap import PRMstarPlanner
-from baselines.ompl.units import tables_in, unit_of
+from baselines.ompl.units import tables_in
+from baselines.units import unit_of
 from baselines.ompl.watched import (
     AORRTCPlanner,
     AORRTCSettings,
