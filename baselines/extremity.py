@@ -21,8 +21,8 @@ from baselines.limits import time_is_over
 from baselines.units import longer_side, unit_above
 from baselines.visibility_graph import tiny_scene
 from suite.errors import PluginError
+from suite.geometry.coordinates import printed
 from suite.geometry.kernels import first_collision
-from suite.geometry.tolerances import GRID
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
 from suite.scenes.exact import path_length
 from suite.scenes.scene import Query, Scene
@@ -149,23 +149,21 @@ class ExtremityPlanner(Planner[ExtremitySettings]):
             if any(region.boundary.distance(Point(end)) <= width_of(scene) for region in regions):
                 return (
                     f"{self.name} does not see all that it should from an edge, and the {what} "
-                    f"({end[0]:g}, {end[1]:g}) lies on one. Move it into the open."
+                    f"{printed(*end)} lies on one. Move it into the open."
                 )
         points = [point for region in regions for point in pinches(region)]
         if points:
-            x, y = points[0]
             return (
-                f"{self.name} would slip through the point ({x:g}, {y:g}), in which obstacles "
+                f"{self.name} would slip through the point {printed(*points[0])}, in which obstacles "
                 "meet. Let them overlap or keep them apart."
             )
         width = FINEST * longer_side(scene)
         points = [point for region in regions for point in finer_places(region, width)]
         if not points:
             return None
-        x, y = points[0]
         return (
             f"{self.name} can't tell apart what lies within {width:.1g} m in a room of this size, "
-            f"as at ({x:g}, {y:g}). Close such passages, or widen them."
+            f"as at {printed(*points[0])}. Close such passages, or widen them."
         )
 
     def plan(
@@ -207,15 +205,18 @@ def regions_of(scene: Scene, query: Query) -> list[Polygon]:
 
     Outlines run counter-clockwise and holes clockwise.
     """
-    solid = scene.arrangement.solid
-    free = shapely.get_parts(shapely.box(*solid.bounds).difference(solid))
+    local, world = scene.coordinates.local, scene.coordinates.world
+    solid = shapely.transform(scene.arrangement.solid, local)
+    free = shapely.get_parts(
+        shapely.transform(shapely.box(*solid.bounds).difference(solid), world)
+    )
     ends, width = [Point(query.start), Point(query.goal)], width_of(scene)
     return [orient(p) for p in free if all(p.distance(end) <= width for end in ends)]
 
 
 def width_of(scene: Scene) -> float:
     """Metres within which an end lies on an edge: as the package sees it, or as it was snapped."""
-    return max(FINEST * longer_side(scene), GRID)
+    return max(FINEST * longer_side(scene), scene.coordinates.grid)
 
 
 def pinches(region: Polygon) -> list[tuple[float, float]]:

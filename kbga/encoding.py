@@ -12,11 +12,8 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from suite.geometry.tolerances import GRID_DECIMALS
+from suite.geometry.coordinates import coordinates_of
 from suite.jit import kernel
-
-DIGITS = 15
-"""Decimal digits that a float64 holds wherever it lies."""
 
 FINEST = 20_000
 """Finest resolution. Lattice numbers are 32 bits wide, and a byte is kept for each: 400 MB."""
@@ -31,7 +28,8 @@ class Lattice(NamedTuple):
     x0, y0 : float, the crossing number 0, metres.
     unit : float, spacing of the lines, metres.
     columns, rows : int, crossings in a row, and in a column.
-    cells : float, cells of the grid of coordinates in a metre.
+    origin_x, origin_y : float, where the grid of the scene's coordinates begins, metres.
+    cells : float, cells of that grid in a metre.
     """
 
     x0: float
@@ -39,6 +37,8 @@ class Lattice(NamedTuple):
     unit: float
     columns: int
     rows: int
+    origin_x: float
+    origin_y: float
     cells: float
 
 
@@ -64,33 +64,31 @@ def make_lattice(
     unit = max(unit, math.sqrt(width * height) / FINEST)
     # What rounding leaves off the last line is no reason to leave off the line.
     columns, rows = (int(side / unit + ROUNDING) + 1 for side in (width, height))
-    return Lattice(xmin, ymin, unit, columns, rows, _cells(max(map(abs, bounds))))
-
-
-def _cells(largest: float) -> float:
-    """Cells in a metre of the finest decimal grid that scenes have, and floats up to there."""
-    return float(10 ** min(GRID_DECIMALS, DIGITS - math.ceil(math.log10(max(largest, 1.0)))))
+    grid = coordinates_of(bounds)
+    return Lattice(xmin, ymin, unit, columns, rows, *grid.origin, float(10**grid.decimals))
 
 
 @kernel
-def _on_grid(x: float, cells: float) -> float:
+def _on_grid(x: float, origin: float, cells: float) -> float:
     """Coordinate on the grid of the obstacles, so that a node on a wall or the border stays there.
 
     0.1 * 3 lies 5e-17 beyond 0.3: without this, inside an obstacle that begins there.
     """
-    return np.rint(x * cells) / cells
+    return origin + np.rint(x * cells) / cells
 
 
 @kernel
 def node_x(lattice: Lattice, node: int) -> float:
     """Coordinate x of a lattice number, metres."""
-    return _on_grid(lattice.x0 + lattice.unit * (node % lattice.columns), lattice.cells)
+    x = lattice.x0 - lattice.origin_x + lattice.unit * (node % lattice.columns)
+    return _on_grid(x, lattice.origin_x, lattice.cells)
 
 
 @kernel
 def node_y(lattice: Lattice, node: int) -> float:
     """Coordinate y of a lattice number, metres."""
-    return _on_grid(lattice.y0 + lattice.unit * (node // lattice.columns), lattice.cells)
+    y = lattice.y0 - lattice.origin_y + lattice.unit * (node // lattice.columns)
+    return _on_grid(y, lattice.origin_y, lattice.cells)
 
 
 @kernel

@@ -27,15 +27,14 @@ from suite.geometry.kernels import (
     pinch_at,
     segment_slips_through,
 )
-from suite.geometry.tolerances import GRID
 from suite.jit import inlined_kernel, kernel
 
 HAIR = 1e-8
 """Share of the room's longer side below which a distance is rounding: 1e-6 m in 100 m."""
 
-ROUNDING = 2.0**-50
-"""Share of the largest coordinate, four units in its last place: far from the origin, rounding is
-coarser than a small room's share."""
+ROUNDING = 2.0**-44
+"""Share of the largest coordinate, 256 spacings of float64: scenes have no coarser grid. Far from
+the origin it is more than a small room's share."""
 
 SIDES_OF_FRAME = 1.0 + 2.0 * FRAME_MARGIN
 """Longer side of the frame's box by that of the room."""
@@ -53,7 +52,7 @@ def hair(arrays: ObstacleArrays) -> float:
     xmin, ymin = arrays.tree[0, XMIN], arrays.tree[0, YMIN]
     xmax, ymax = arrays.tree[0, XMAX], arrays.tree[0, YMAX]
     share = HAIR * (max(xmax - xmin, ymax - ymin) / SIDES_OF_FRAME)
-    return max(share, 2.0 * GRID, ROUNDING * max(-xmin, -ymin, xmax, ymax))
+    return max(share, ROUNDING * max(-xmin, -ymin, xmax, ymax))
 
 
 @inlined_kernel

@@ -22,6 +22,7 @@ SIDE, DEPTH = 100_000, 75_000
 """Of a room that is not turned, units."""
 
 PLACES = {
+    "the origin": (0.0, 0.0),
     "UTM 32N Munich": (691608.2, 5334765.7),
     "UTM 37S Nairobi": (257390.5, 9857640.5),
     "EPSG:3857 Tokyo": (15550400.3, 4256900.9),

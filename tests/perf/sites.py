@@ -24,7 +24,6 @@ from numpy.typing import NDArray
 
 from suite.errors import SceneError
 from suite.geometry.kernels import first_collision
-from suite.geometry.tolerances import GRID
 from suite.referee.path import INTERIORS_MEET, Referee
 from suite.report.formats import render
 from suite.report.kinds import TableFormat
@@ -36,6 +35,9 @@ from tests.sites import PLACES, ROOMS, Ends, Site, draw_site, placed
 SEGMENTS = 20
 """Random segments of each site on which kernel, referee and shapely must agree."""
 
+TOO_COARSE = "Shift the scene towards (0, 0)."
+"""What is said of a room that is too small for where it lies."""
+
 WORST_RELATIVE = 1e-6
 """How far the optimum at a place may lie from that at the origin."""
 
@@ -45,7 +47,8 @@ class Findings:
     """What was found of the sites of one place and one size.
 
     draws : sites.
-    refused : of them, by an error with words; each is one that should have been a scene.
+    too_coarse : of them, refused because float64 can't tell their places apart where they lie.
+    refused : of them, by any other error with words; each is one that should have been a scene.
     tracebacks : of them, by any other error.
     lost : sites in which a part of an obstacle is not closed.
     segments, disagreements : compared between kernel, referee and shapely; not the same.
@@ -55,6 +58,7 @@ class Findings:
     """
 
     draws: int = 0
+    too_coarse: int = 0
     refused: int = 0
     tracebacks: int = 0
     lost: int = 0
@@ -73,8 +77,13 @@ class Findings:
 
 def sites(place: str, room: str, draws: int) -> Iterator[Site]:
     """The random sites of a place and a size, the same in each call."""
+    return (placed(site, place, room) for site in drawn(place, room, draws))
+
+
+def drawn(place: str, room: str, draws: int) -> Iterator[Site]:
+    """The same, in whole units."""
     rng = np.random.default_rng([0, crc32(f"{place}/{room}".encode())])
-    return (placed(draw_site(rng), place, room) for _ in range(draws))
+    return (draw_site(rng) for _ in range(draws))
 
 
 def as_scene(site: Site) -> Scene:
@@ -87,11 +96,17 @@ def as_scene(site: Site) -> Scene:
 def examined(place: str, room: str, draws: int) -> Findings:
     """What is found of so many sites."""
     found = Findings()
-    for number, site in enumerate(sites(place, room, draws)):
+    for number, units in enumerate(drawn(place, room, draws)):
         found.draws += 1
+        site = placed(units, place, room)
+        # At the origin itself, what can differ is the size.
+        other = placed(units, place, "100 m") if place == "the origin" else site.at_origin()
         try:
-            _examine(site, found, np.random.default_rng(number))
+            _examine(site, other, found, np.random.default_rng(number))
         except SceneError as error:
+            if TOO_COARSE in str(error):
+                found.too_coarse += 1
+                continue
             found.refused += 1
             found.messages.append(f"{place}, {room}, site {number}: {error}")
         except Exception as error:
@@ -104,10 +119,10 @@ def examined(place: str, room: str, draws: int) -> Findings:
     return found
 
 
-def _examine(site: Site, found: Findings, rng: np.random.Generator) -> None:
-    twin = site.at_origin()
-    scene, origin = as_scene(site), as_scene(twin)
-    judges = _Judges(scene, site, twin)
+def _examine(site: Site, other: Site, found: Findings, rng: np.random.Generator) -> None:
+    scene, origin = as_scene(site), as_scene(other)
+    scale = site.unit / other.unit
+    judges = _Judges(scene, site, site.at_origin())
     if judges.has_lost():
         found.lost += 1
         found.messages.append(f"lost an obstacle of {site.buildings}")
@@ -117,7 +132,7 @@ def _examine(site: Site, found: Findings, rng: np.random.Generator) -> None:
         if (here.path is None) != (there.path is None):
             found.other += 1
         elif here.path is not None:
-            found.worst = max(found.worst, abs(here.length / there.length - 1.0))
+            found.worst = max(found.worst, abs(here.length / (scale * there.length) - 1.0))
             paths.append(here.path)
     for path in (*paths, *_segments(scene, site, rng)):
         found.segments += 1
@@ -146,8 +161,7 @@ class _Judges:
         self._scene = scene
         self._corner = site.corner
         self._referee = Referee(scene)
-        coordinates = shapely.get_coordinates([site.room, *site.buildings])
-        self._width = 2.0 * max(GRID, float(np.spacing(np.abs(coordinates).max())))
+        self._width = 2.0 * scene.coordinates.grid
         around = twin.room.buffer(0.2 * twin.room.length).difference(twin.room)
         drawn = shapely.union_all([p.intersection(twin.room) for p in twin.buildings])
         self._drawn = drawn
@@ -184,6 +198,7 @@ def table(findings: dict[tuple[str, str], Findings]) -> Table:
             "place": place,
             "room": room,
             "draws": found.draws,
+            "too coarse": found.too_coarse,
             "refused": found.refused,
             "tracebacks": found.tracebacks,
             "obstacle lost": found.lost,
@@ -198,8 +213,9 @@ def table(findings: dict[tuple[str, str], Findings]) -> Table:
         "sites",
         f"Random building sites: {hold} of {len(findings)} places and sizes hold",
         pd.DataFrame(rows),
-        "Each site is made at its place and, moved without rounding, at the origin. Refused and "
-        "tracebacks: sites that could not be made. Path or none: queries with a path at one of the "
+        "Each site is made at its place and, moved without rounding, at the origin; one at the "
+        "origin in a room of 100 m, too. Too coarse: refused, for float64 can't tell its places "
+        "apart there. Refused and tracebacks: sites that could not be made. Path or none: queries with a path at one of the "
         "two only. Error: relative, of the optimum, to that at the origin. Disagreements: paths and "
         "random segments on which kernel, referee and shapely (in the origin's coordinates, by the "
         "polygons as drawn) have two opinions.",
