@@ -9,8 +9,8 @@ STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
 
-.PHONY: help setup setup-dev browser bench test test-slow torture lint docs perf harness results \
-	search-readings clean
+.PHONY: help setup setup-dev browser bench test test-slow torture lint docs perf harness sites \
+	results search-readings clean
 
 help:
 	@echo "make bench     run the matrix paper-static and print its tables (ARGS=--quick: two seeds)"
@@ -19,6 +19,7 @@ help:
 	@echo "make docs      write the reference of the Python interface to out/docs"
 	@echo "make results   remake results/: three quarters of an hour; results-NAME: one folder of it"
 	@echo "make perf, make harness   measure the planners' times, and what the harness costs"
+	@echo "make sites     random building sites at places on earth, 1 mm to 1,000 km; half an hour"
 
 setup: $(INSTALLED)
 setup-dev: $(INSTALLED)-dev
@@ -111,6 +112,10 @@ search-readings: setup
 # What the harness itself costs. On a machine that does nothing else.
 harness: setup
 	$(BIN)/python -m tests.perf.harness results/harness $(ARGS)
+
+# Whether it holds anywhere: 1,000 random building sites at each place and of each size.
+sites: setup
+	$(BIN)/python -m tests.perf.sites results/sites $(ARGS)
 
 clean:
 	rm -rf .venv out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
