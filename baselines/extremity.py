@@ -207,9 +207,7 @@ def regions_of(scene: Scene, query: Query) -> list[Polygon]:
     """
     local, world = scene.coordinates.local, scene.coordinates.world
     solid = shapely.transform(scene.arrangement.solid, local)
-    free = shapely.get_parts(
-        shapely.transform(shapely.box(*solid.bounds).difference(solid), world)
-    )
+    free = shapely.get_parts(shapely.transform(shapely.box(*solid.bounds).difference(solid), world))
     ends, width = [Point(query.start), Point(query.goal)], width_of(scene)
     return [orient(p) for p in free if all(p.distance(end) <= width for end in ends)]
 

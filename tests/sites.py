@@ -126,9 +126,7 @@ def _building(angle: float, rng: np.random.Generator) -> list[Polygon]:
     return [_turned(shape, angle + own) for shape in shapes]
 
 
-def _queries(
-    room: Polygon, buildings: list[Polygon], rng: np.random.Generator
-) -> dict[str, Ends]:
+def _queries(room: Polygon, buildings: list[Polygon], rng: np.random.Generator) -> dict[str, Ends]:
     """Two queries between points that are clear of all walls."""
     closed = shapely.union_all([room.boundary, *buildings])
     shapely.prepare(closed)

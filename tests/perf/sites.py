@@ -33,7 +33,7 @@ from suite.report.kinds import TableFormat
 from suite.report.table import Table
 from suite.scenes.exact import shortest_path
 from suite.scenes.scene import Query, Scene, SceneWarning, make_scene
-from tests.sites import PLACES, ROOMS, Ends, Site, draw_site, placed
+from tests.sites import PLACES, ROOMS, Site, draw_site, placed
 
 SEGMENTS = 20
 """Random segments of each site on which kernel, referee and shapely must agree."""
@@ -155,9 +155,7 @@ def _examine(site: Site, other: Site, found: Findings, rng: np.random.Generator)
         found.disagreements += not judges.agree(path)
 
 
-def _segments(
-    scene: Scene, site: Site, rng: np.random.Generator
-) -> list[NDArray[np.float64]]:
+def _segments(scene: Scene, site: Site, rng: np.random.Generator) -> list[NDArray[np.float64]]:
     """Random segments: half of them from anywhere, half of them from corners of buildings."""
     low, high = np.reshape(scene.bounds, (2, 2))
     corners = shapely.get_coordinates(site.buildings)

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from baselines.ompl.oneshot import FMTPlanner, RRTConnectPlanner, RRTConnectSettings
 from baselines.ompl.roadmap import PRMstarPlanner
 from baselines.ompl.units import tables_in
-from baselines.units import unit_of
 from baselines.ompl.watched import (
     AORRTCPlanner,
     AORRTCSettings,
@@ -22,6 +21,7 @@ from baselines.ompl.watched import (
     RRTstarSettings,
     SORRTstarPlanner,
 )
+from baselines.units import unit_of
 from suite.geometry.kernels import segment_enters_tables
 from suite.planner import Budget, PlanStatus
 from suite.referee.path import Referee
