@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from suite.geometry.tolerances import GRID_DECIMALS
+from suite.geometry.tolerances import GRID_DECIMALS, HIT_DEPTH
 
 Bounds = tuple[float, float, float, float]
 
@@ -42,6 +42,11 @@ class Coordinates:
     def grid(self) -> float:
         """Width of the grid, metres."""
         return float(f"1e{-self.decimals}")
+
+    @property
+    def hit_depth(self) -> float:
+        """How deep a robot must be in an obstacle to be hit by it, metres."""
+        return HIT_DEPTH * self.grid
 
     def local(self, xy: ArrayLike) -> NDArray[np.float64]:
         """Coordinates (..., 2) relative to the origin; exact within reach of the workspace."""
