@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
-from shapely.geometry import Point, Polygon
+from shapely.geometry import LineString, Point, Polygon
 from shapely.geometry.polygon import orient
 
 from baselines.ends import ends_are_free
@@ -154,8 +154,8 @@ class ExtremityPlanner(Planner[ExtremitySettings]):
         points = [point for region in regions for point in pinches(region)]
         if points:
             return (
-                f"{self.name} would slip through the point {printed(*points[0])}, in which obstacles "
-                "meet. Let them overlap or keep them apart."
+                f"{self.name} would slip through the point {printed(*points[0])}, in which "
+                "obstacles meet. Let them overlap or keep them apart."
             )
         width = FINEST * longer_side(scene)
         points = [point for region in regions for point in finer_places(region, width)]
@@ -244,7 +244,7 @@ def finer_places(region: Polygon, width: float) -> list[tuple[float, float]]:
     rings = [shapely.get_coordinates(ring) for ring in (region.exterior, *region.interiors)]
     vertices = np.concatenate([ring[:-1] for ring in rings])
     edges = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
-    tree = shapely.STRtree(shapely.linestrings(edges))
+    tree = shapely.STRtree([LineString(edge) for edge in edges])
     near = tree.query(shapely.points(vertices), predicate="dwithin", distance=width).T
     is_own = (edges[near[:, 1]] == vertices[near[:, 0], None]).all(axis=2).any(axis=1)
     return [(x, y) for x, y in vertices[np.unique(near[~is_own, 0])].tolist()]

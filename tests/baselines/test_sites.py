@@ -1,4 +1,4 @@
-"""Every planner plans anywhere on earth and in rooms of any size, or says honestly that it can't."""
+"""Every planner plans anywhere on earth and in rooms of any size, or says that it can't."""
 
 import pytest
 

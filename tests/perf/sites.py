@@ -331,10 +331,11 @@ def table(findings: dict[tuple[str, str], Findings]) -> Table:
         pd.DataFrame(rows),
         "Each site is made at its place and, moved without rounding, at the origin; one at the "
         "origin in a room of 100 m, too. Too coarse: refused, for float64 can't tell its places "
-        "apart there. Refused and tracebacks: sites that could not be made. Slit: "
-        "sites with one narrower than the grid of the place, which closes it; their optima are not "
-        "compared. Path or none: queries with a path at one of the two only. Error: relative, of the optimum, to that at the origin. Disagreements: paths and "
-        "random segments on which kernel, referee and shapely (in the origin's coordinates, by the "
+        "apart there. Refused and tracebacks: sites that could not be made. Slit: sites with one "
+        "narrower than the grid of the place, which closes it; their optima are not compared. Path "
+        "or none: queries with a path at one of the two only. Error: relative, of the optimum, to "
+        "that at the origin. Disagreements: paths and random segments on which kernel, referee and "
+        "shapely (in the origin's coordinates, by the "
         "polygons as drawn) have two opinions.",
     )
 
