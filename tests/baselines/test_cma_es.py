@@ -90,3 +90,18 @@ def test_the_maze_is_beyond_it_and_it_says_exhausted():
 def test_a_bad_setting_is_refused_by_name(setting, value, rule):
     with pytest.raises(ValueError, match=f"{setting} is {value}. It must be {rule}"):
         CmaEsSettings(**{setting: value})
+
+
+@pytest.mark.parametrize("factor", [2.0**-10, 2.0**17])
+def test_a_room_of_another_size_has_the_same_path(factor):
+    # The package takes a first step of more than 1e4 for divergence, in metres or whatever.
+    scaled = make_scene(
+        "box",
+        shapely.box(0, 0, 10 * factor, 10 * factor),
+        [shapely.box(*(factor * x for x in (4, 2, 6, 7)))],
+        ((factor, 5 * factor), (9 * factor, 5 * factor)),
+    )
+    here, there = (plan(Budget(generations=60), scene=scene) for scene in (BOX, scaled))
+    assert here.status is there.status is PlanStatus.SOLVED
+    # Where a scene is snapped, a tenth of a nanometre counts; the search does not.
+    assert there.claimed_cost == pytest.approx(factor * here.claimed_cost, rel=1e-6)
