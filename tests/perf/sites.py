@@ -238,9 +238,10 @@ class Planned:
 
 
 def planned(planner: Planner, scenes: Iterable[Scene]) -> Planned:
-    """Let a planner plan on scenes, within a few thousand checks."""
-    kept = planner.abilities.budgets
-    budget = Budget(checks=PLANNED_CHECKS) if "checks" in kept else Budget()
+    """Let a planner plan on scenes: to its end, or within a few thousand checks."""
+    abilities = planner.abilities
+    is_limited = "checks" in abilities.budgets and not abilities.deterministic
+    budget = Budget(checks=PLANNED_CHECKS) if is_limited else Budget()
     made = Planned()
     planner.warm_up()
     for number, scene in enumerate(scenes):
@@ -300,7 +301,7 @@ def planner_table(made: dict[str, Planned]) -> Table:
         "planners",
         f"Planners on one site of each place and size: {hold} of {len(made)} hold",
         pd.DataFrame(rows),
-        f"Within {PLANNED_CHECKS} checks, where a planner keeps such a budget. Invalid: paths that "
+        f"Within {PLANNED_CHECKS} checks; the deterministic ones to their end. Invalid: paths that "
         "the referee rejects, and, of a planner that claims to be exact, answers that are not.",
     )
 
