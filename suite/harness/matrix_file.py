@@ -194,7 +194,7 @@ def read_matrix_file(path: Path) -> tuple[Source, MatrixFile]:
 
 def _read_toml(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise MatrixError(f"{path}: can't be read ({error.strerror}).") from error
     except UnicodeDecodeError as error:
