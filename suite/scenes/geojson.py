@@ -194,7 +194,8 @@ def _check_optimum(optima: Any) -> None:
         raise SceneError(f"its property 'optimum' is {shown(optima)}. {mend}")
     for query, length in optima.items():
         try:
-            typed(length, Length | None)
+            if length is not None:
+                typed(length, Length)
         except MisfitError as error:
             raise SceneError(
                 f"its property 'optimum' of {shown(query)} is {shown(length)}. {mend}"
