@@ -23,6 +23,9 @@ STRANGE: tuple[Any, ...] = (
 )  # fmt: skip
 DEEPEST = 40
 
+FACTORS = (1, 1, 1, -1, 0.1, 10, 1e6, 1e12)
+OFFSETS = (0, 1e-12, 1e-9, -1e-9, 1e-6, 1, 3, -50)
+
 
 def mutated_document(document: Any, seed: int) -> Any:
     """A copy with one to three things changed in it."""
@@ -86,7 +89,7 @@ def _nest(holder: Any, key: Any, rng: random.Random) -> None:
 def _nudge(holder: Any, key: Any, rng: random.Random) -> None:
     value = holder[key]
     if isinstance(value, int | float) and not isinstance(value, bool):
-        holder[key] = value * rng.choice([-1, 0.1, 10, 1e6, 1e12]) + rng.choice([0, 1e-9, 1, -50])
+        holder[key] = value * rng.choice(FACTORS) + rng.choice(OFFSETS)
     else:
         _retype(holder, key, rng)
 

@@ -60,9 +60,12 @@ class _Table(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 _Name = Annotated[str, Meta(min_length=1)]
-_Seed = Annotated[int, Meta(ge=0, description="whole numbers of 0 or more")]
+MOST_SEEDS = 10**6
+"""How many a matrix may count: the cells of more would not fit into memory."""
+
+_Seed = Annotated[int, Meta(ge=0, le=2**63 - 1, description="whole numbers of 0 to 2^63 - 1")]
 _Seeds = Annotated[
-    Annotated[int, Meta(ge=1)] | Annotated[list[_Seed], Meta(min_length=1)],
+    Annotated[int, Meta(ge=1, le=MOST_SEEDS)] | Annotated[list[_Seed], Meta(min_length=1)],
     Meta(description="a number of seeds, 1 or more, or a list of them"),
 ]
 _SceneName = Annotated[_Name, Meta(description="the name or the file of a scene")]

@@ -33,11 +33,10 @@ Properties of an obstacle that changes over time (seconds from the start of a ru
 
 Members of the collection that the suite reads: ``name`` (default: the file's name); ``crs``
 (default: metres in the plane; one that is not known to be that is refused, see
-:mod:`suite.scenes.crs`) and
-``properties``, an object of which it knows ``description``, ``figure``, ``paper_best``,
-``reconstruction`` and ``optimum`` (from query name to exact optimal length, metres: what the file
-says of itself, for a reader; results are measured by the one that is computed); of a dynamic
-scene also ``world``, the default settings of its simulation (see
+:mod:`suite.scenes.crs`) and ``properties``, an object of which it knows ``description``,
+``figure``, ``paper_best``, ``reconstruction`` and ``optimum`` (from query name to exact optimal
+length, metres: what the file says of itself, for a reader; results are measured by the one that is
+computed); of a dynamic scene also ``world``, the default settings of its simulation (see
 :class:`suite.simulation.settings.WorldSettings`), and ``gates``, from a name to a segment
 ``[[x, y], [x, y]]`` across an opening, so that a run can say which one the robot passed. Others
 are kept. Any JSON, GIS or shapely tool reads the file.
