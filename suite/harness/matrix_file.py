@@ -63,7 +63,7 @@ _Name = Annotated[str, Meta(min_length=1)]
 MOST_SEEDS = 10**6
 """How many a matrix may count: the cells of more would not fit into memory."""
 
-_Seed = Annotated[int, Meta(ge=0, le=2**63 - 1, description="whole numbers of 0 to 2^63 - 1")]
+_Seed = Annotated[int, Meta(ge=0, le=2**63 - 1, description="whole numbers of 0 or more")]
 _Seeds = Annotated[
     Annotated[int, Meta(ge=1, le=MOST_SEEDS)] | Annotated[list[_Seed], Meta(min_length=1)],
     Meta(description="a number of seeds, 1 or more, or a list of them"),
@@ -204,6 +204,8 @@ def _read_toml(path: Path) -> dict[str, Any]:
         raise MatrixError(f"{path.name}: is not UTF-8 text (byte {error.start}).") from error
     except tomllib.TOMLDecodeError as error:
         raise MatrixError(f"{path.name}: not TOML: {error}.") from error
+    except (ValueError, RecursionError) as error:  # numbers too long, or nested too deep
+        raise MatrixError(f"{path.name}: can't be read as TOML ({error}).") from error
 
 
 def outline(name: str) -> dict[str, Any]:

@@ -45,6 +45,7 @@ Whatever may be left out may be null, as geopandas writes it, and names may be e
 """
 
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -63,6 +64,9 @@ ROLES = ("workspace", "obstacle", "start", "goal")
 
 LONGEST_NAME = 200
 """Characters: names stand in tables, file names and errors."""
+
+_LINE = re.compile(rf"[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]{{1,{LONGEST_NAME}}}")
+"""No control characters, no ends of lines, nothing that UTF-8 can't hold."""
 
 _READ = ("optimum", "world", "gates")
 """Properties of the collection that are read, and may be null for being left out."""
@@ -157,12 +161,7 @@ def _name(where: str, what: str, given: Any, default: str) -> str:
         return default
     # A table of names of which some are missing holds whole numbers as 1.0.
     name = str(given) if isinstance(given, str | int | float) else ""
-    if (
-        isinstance(given, bool)
-        or given != given
-        or not name.isprintable()
-        or not 0 < len(name) <= LONGEST_NAME
-    ):
+    if isinstance(given, bool) or given != given or not _LINE.fullmatch(name):
         raise SceneError(
             f"{where}, {what}: its name is {shown(given)}. "
             f"Give a text of one line and at most {LONGEST_NAME} characters."

@@ -339,7 +339,9 @@ def test_a_gate_that_is_no_segment_is_refused(read, bad):
         read({**GOOD, "properties": {"gates": bad}})
 
 
-@pytest.mark.parametrize("bad", [["a"], {"a": 1}, True, "two\nlines", "x" * 201, float("nan")])
+@pytest.mark.parametrize(
+    "bad", [["a"], {"a": 1}, True, "two\nlines", "x" * 201, float("nan"), "\x00", "\ud800"]
+)
 def test_a_name_that_is_no_line_of_text_is_refused(read, bad):
     mend = "Give a text of one line"
     with pytest.raises(SceneError, match=rf"the collection: its name is .*{mend}"):
@@ -411,3 +413,10 @@ def test_a_file_that_cannot_be_written_is_an_error_with_the_reason(tmp_path):
     scene = make_scene("one", box(0, 0, 9, 9), [], {"main": ((0, 0), (9, 9))})
     with pytest.raises(SceneError, match="can't be written"):
         write_scene(scene, tmp_path / "nowhere" / "out.geojson")
+
+
+@pytest.mark.parametrize("name", ["größe 7 ½ m²", "a\u00a0b", "家", 7, 1.0])
+def test_a_name_may_be_any_line_of_text_or_a_number(read, name, tmp_path):
+    scene = read({**GOOD, "name": name})
+    assert scene.name == str(name)
+    assert same_after_a_round_trip(scene, tmp_path / "out.geojson")
