@@ -578,12 +578,15 @@ def test_who_keeps_no_cpu_time_says_so(kbga_bench, hostile, wall_file):
     assert "wanderer keeps no budget of cpu_s. Give one that it keeps: generations" in done.out
 
 
-def test_run_tries_contended_rows_again_while_it_has_patience(kbga_bench, matrix_file, tmp_path):
+def test_run_tries_contended_rows_again_while_it_has_patience(
+    kbga_bench, matrix_file, tmp_path, monkeypatch
+):
+    monkeypatch.setattr("suite.harness.patience.OthersLoad", lambda: lambda: 0.0)
     run = ("run", matrix_file("drowsy"), "--store", tmp_path / "s.db")
     folder = matrix_file("drowsy")
     folder.write_text(f'{folder.read_text()}settings = {{folder = "{tmp_path}"}}\n')
     assert "2 rows had no core to run on" in kbga_bench(*run).out
     assert "2 rows had no core for themselves" in kbga_bench("status", tmp_path / "s.db").out
-    said = kbga_bench(*run, "--patience", 20).out
+    said = kbga_bench(*run, "--patience", 600).out
     assert "2 were there, 0 ran now" in said
     assert "2 rows had no core and ran again; none still are contended." in said

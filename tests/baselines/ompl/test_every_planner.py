@@ -107,7 +107,7 @@ def test_ends_inside_an_obstacle_are_infeasible_and_raise_nothing(planner, start
 
 
 @each
-@pytest.mark.parametrize("budget", [Budget(checks=10_000), Budget(wall_s=0.3)], ids=str)
+@pytest.mark.parametrize("budget", [Budget(checks=10_000), Budget(cpu_s=0.3)], ids=str)
 def test_improvements_fall_and_the_last_is_the_path(planner, budget):
     recorder = Recorder()
     made = run(planner, SCENES["one box"], budget, recorder=recorder)
@@ -138,10 +138,10 @@ def test_a_budget_of_checks_is_never_exceeded(planner, checks):
 
 @each
 def test_a_budget_of_wall_time_is_kept_within_reason(planner):
-    began = time.perf_counter()
+    began = time.process_time()
     run(planner, load_scene("maze"), Budget(wall_s=0.2))
-    # Generous: what is refused here is a planner that does not stop, not a slow machine.
-    assert time.perf_counter() - began < 5.0
+    # What is refused here is a planner that does not stop, and not a machine that gives it little.
+    assert time.process_time() - began < 5.0
 
 
 @each
@@ -150,9 +150,8 @@ def test_the_clock_of_the_run_is_the_recorders(planner):
         def wall_s(self) -> float:
             return 1.0
 
-    began = time.perf_counter()
-    run(planner, SCENES["one box"], Budget(wall_s=0.9), recorder=Late())
-    assert time.perf_counter() - began < 0.5
+    made = run(planner, load_scene("maze"), Budget(wall_s=0.9), recorder=Late())
+    assert made.checks < 2000
 
 
 @each

@@ -115,8 +115,15 @@ class DrowsySettings:
     folder: str = "."
 
 
+def _have_a_core(recorder):
+    """Let this process's clocks go alike from now on, as they do where nobody else wants a core."""
+    spent, began = time.process_time(), recorder.started
+    time.process_time = lambda: spent + time.perf_counter() - began
+
+
 class Drowsy(_Base):
-    """Sleeps when it is run first, as if the machine were busy, and is awake from then on."""
+    """Sleeps when it is run first, as if the machine were busy, and then is awake on an idle one,
+    however busy it is."""
 
     name = "drowsy"
     Settings = DrowsySettings
@@ -127,6 +134,8 @@ class Drowsy(_Base):
         if not mark.exists():
             time.sleep(0.1)
             mark.touch()
+        else:
+            _have_a_core(recorder)
         return Plan(PlanStatus.SOLVED, self.path(scene, query), checks=7, computed_checks=3)
 
 

@@ -17,6 +17,8 @@ pytestmark = pytest.mark.skipif(
     reason=f"no {CHROMIUM}: `make browser` installs it, as root on Debian",
 )
 
+expect.set_options(timeout=300_000.0)  # milliseconds: for a machine that is busy
+
 ARGUMENTS = (
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
@@ -43,7 +45,10 @@ class Seen:
 
     def __init__(self, browser, file, **context):
         self.context = browser.new_context(**context)
+        self.context.set_default_timeout(300_000.0)
         self.page = self.context.new_page()
+        # The page's time stands still until a test lets it go on.
+        self.page.clock.install()
         self.requests: list[str] = []
         self.complaints: list[str] = []
         self.page.on("request", lambda request: self.requests.append(request.url))
