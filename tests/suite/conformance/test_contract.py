@@ -13,6 +13,7 @@ from suite.conformance.rules import RULES
 from tests.suite.conformance.broken_planners import Detours, DetourSettings
 
 ROOT = Path(__file__).parents[3]
+OWN_PYTEST = [sys.executable, "-m", "pytest", "-q", "-rfs", "-p", "no:cacheprovider"]
 
 
 class TestDetours(PlannerContract):
@@ -59,8 +60,7 @@ def outcomes(tmp_path):
             """)
         )
         done = subprocess.run(
-            [sys.executable, "-m", "pytest", "-q", "-rfs", "-p", "no:cacheprovider", str(file)]
-            + ["-k", " or ".join(rules)],
+            [*OWN_PYTEST, "-k", " or ".join(rules), str(file)],
             cwd=ROOT,
             capture_output=True,
             text=True,
