@@ -7,9 +7,10 @@ and nothing else. pandas reads it; see :mod:`suite.store.read`.
 import json
 import math
 import sqlite3
+import warnings
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import astuple
 from pathlib import Path
 from types import TracebackType
@@ -37,6 +38,7 @@ class Store:
         self._connection = connection
         self._lock = lock
         self._session: int | None = None
+        self._files = _identities(path)
 
     def __enter__(self) -> Self:
         return self
@@ -50,9 +52,18 @@ class Store:
         self.close()
 
     def close(self) -> None:
-        """Close the file and let others write. Everything that was added is in it already."""
-        self._connection.close()
-        self._lock.release()
+        """Close the file and let others write. Everything that was added is in it already.
+
+        Raises
+        ------
+        StoreError
+            If the file was deleted and can't be written anew.
+        """
+        try:
+            self._restore_if_gone()
+        finally:
+            self._connection.close()
+            self._lock.release()
 
     def begin_session(self, provenance: Mapping[str, Any]) -> None:
         """Say what machine and which versions the rows that follow come from."""
@@ -145,6 +156,7 @@ class Store:
     @contextmanager
     def attached(self, other: Path) -> Iterator[sqlite3.Connection]:
         """One transaction on this store (``main``) beside another one (``other``, read only)."""
+        self._restore_if_gone()
         with explained(other):
             uri = f"{other.absolute().as_uri()}?mode=ro"
             self._connection.execute("ATTACH ? AS other", (uri,))
@@ -156,8 +168,49 @@ class Store:
 
     @contextmanager
     def _writing(self) -> Iterator[sqlite3.Connection]:
+        self._restore_if_gone()
         with explained(self.path), self._connection:
             yield self._connection
+
+    def _restore_if_gone(self) -> None:
+        """Write the file anew, with all its rows, if somebody has deleted it.
+
+        SQLite would go on in the deleted file without a word, and all rows would be lost at the
+        end. Until then everything is still there, for this connection alone.
+        """
+        if self._files == _identities(self.path):
+            return
+        if self.path.exists() and _identities(self.path)[0] != self._files[0]:
+            kept = self._saved_beside()
+            raise StoreError(
+                f"{self.path}: was replaced by another file while it was written to. Its rows are "
+                f"kept in {kept}: put that in its place, and run the same command again."
+            )
+        saved = self._saved_beside()
+        # Closed before the new file is there: SQLite deletes the journals of its name with it.
+        self._connection.close()
+        if not _lock_file(self.path).exists():
+            self._lock.release()
+            self._lock = _locked(self.path)
+        saved.replace(self.path)
+        self._connection = _open_for_writing(self.path)
+        self._files = _identities(self.path)
+        (rows,) = self._connection.execute("SELECT count(*) FROM runs").fetchone()
+        warnings.warn(
+            f"{self.path}: was deleted while it was written to, or its journal was. It is written "
+            f"anew, with all its {rows} rows. Find out who deletes it: a planner?",
+            stacklevel=2,
+        )
+
+    def _saved_beside(self) -> Path:
+        """A whole copy of the store as this connection sees it, in a file of another name."""
+        _make_folder(self.path)
+        kept = Path(f"{self.path}.rescued")
+        with explained(kept):
+            kept.unlink(missing_ok=True)
+            with closing(connect(kept, writable=True)) as copy:
+                self._connection.backup(copy)
+        return kept
 
 
 def open_store(path: Path, *, create: bool = True) -> Store:
@@ -221,7 +274,7 @@ def _locked(path: Path) -> BaseFileLock:
 
     The lock is on a file beside the store: SQLite's own locks last for a transaction only.
     """
-    file = Path(f"{path}.lock")
+    file = _lock_file(path)
     lock = FileLock(file, timeout=0)
     try:
         # The library waits for a folder that can't be written as for a lock that is held.
@@ -235,6 +288,10 @@ def _locked(path: Path) -> BaseFileLock:
             "permissions."
         ) from error
     return lock
+
+
+def _lock_file(path: Path) -> Path:
+    return Path(f"{path}.lock")
 
 
 def _holder(path: Path) -> str:
@@ -251,13 +308,29 @@ def _holder(path: Path) -> str:
 def is_being_written(path: Path) -> bool:
     """Whether a process has a store open for writing."""
     try:
-        with FileLock(f"{path}.lock", timeout=0):
+        with FileLock(_lock_file(path), timeout=0):
             return False
     except Timeout:
         return True
     except OSError:
         # No right to write there: nobody to ask, and nothing that the caller could disturb.
         return False
+
+
+def _identities(path: Path) -> tuple[tuple[int, int] | None, ...]:
+    """Which files a store's file and its journal are: other ones, or none, if they were deleted.
+
+    SQLite makes the journal with the first change, and keeps it as long as the store is open.
+    """
+    return tuple(_identity(Path(f"{path}{suffix}")) for suffix in ("", "-wal"))
+
+
+def _identity(file: Path) -> tuple[int, int] | None:
+    try:
+        found = file.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino
 
 
 def _make_folder(path: Path) -> None:

@@ -9,11 +9,10 @@ import uuid
 from contextlib import closing
 
 import numpy as np
-import psutil
 import pytest
 
 from suite.store.read import read_paths, read_runs
-from tests.suite.commands import COMMAND, hear_interrupts, in_own_process
+from tests.suite.commands import COMMAND, hear_interrupts, in_own_process, marked
 
 SEEDS = 4
 SAMPLE = 3
@@ -61,18 +60,6 @@ def rows_of(store):
         return len(read_runs(store))
     except Exception:
         return 0
-
-
-def marked(mark):
-    """Processes that descend from a command, wherever they hang now."""
-    found = []
-    for process in psutil.process_iter():
-        try:
-            if process.environ().get("KBGA_TEST_MARK") == mark:
-                found.append(process)
-        except psutil.Error:
-            continue
-    return found
 
 
 def gone(mark, patience_s=5.0):
