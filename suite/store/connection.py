@@ -1,5 +1,6 @@
 """Opening a store's file, and what SQLite's errors mean to a user."""
 
+import os
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,7 +19,18 @@ def connect(path: Path, *, writable: bool) -> sqlite3.Connection:
         if writable:
             # As a URI too, so that other stores can be attached for reading only.
             return sqlite3.connect(f"{path.absolute().as_uri()}", uri=True, timeout=BUSY_S)
-        return sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=BUSY_S)
+        return sqlite3.connect(uri_for_reading(path), uri=True, timeout=BUSY_S)
+
+
+def uri_for_reading(path: Path) -> str:
+    """How SQLite is told to open a store beside whoever writes to it.
+
+    It wants to write its journal even then. In a folder that can't be written, as on a disk that is
+    mounted read-only, it is told that there is no writer, unless there is a journal that says so.
+    """
+    uri = f"{path.absolute().as_uri()}?mode=ro"
+    is_still = not os.access(path.parent, os.W_OK) and not Path(f"{path}-wal").exists()
+    return f"{uri}&immutable=1" if is_still else uri
 
 
 def open_for_reading(path: Path) -> sqlite3.Connection:

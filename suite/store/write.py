@@ -21,7 +21,13 @@ from filelock import BaseFileLock, FileLock, Timeout
 
 from suite.errors import StoreError
 from suite.planner import Snapshot
-from suite.store.connection import check_is_store, connect, explained, missing
+from suite.store.connection import (
+    check_is_store,
+    connect,
+    explained,
+    missing,
+    uri_for_reading,
+)
 from suite.store.read import read_sessions
 from suite.store.record import Cell, RunRecord, canonical_json, short_hash
 from suite.store.schema import BELONGINGS, add_columns, columns_now, create_tables
@@ -158,8 +164,7 @@ class Store:
         """One transaction on this store (``main``) beside another one (``other``, read only)."""
         self._restore_if_gone()
         with explained(other):
-            uri = f"{other.absolute().as_uri()}?mode=ro"
-            self._connection.execute("ATTACH ? AS other", (uri,))
+            self._connection.execute("ATTACH ? AS other", (uri_for_reading(other),))
         try:
             with self._writing() as connection:
                 yield connection

@@ -183,6 +183,8 @@ def _tables_on_read_only(stage: Stage) -> Said:
 
 def _as_nobody(stage: Stage) -> Said:
     """Another user's folder: to be read, not to be written."""
+    stage.folder.chmod(0o755)
+    stage.site.parent.chmod(0o755)
     command = stage.start(before=lambda: (os.setgid(NOBODY), os.setuid(NOBODY)))  # type: ignore[arg-type, return-value]
     return stage.finish(command)
 
