@@ -121,14 +121,33 @@ def test_kill_9_at_any_moment_loses_no_finished_row_and_doubles_none(
     check_resumed(wanted, store, read_runs(store).set_index("key"), read_paths(store))
 
 
-def test_ctrl_c_stops_tidily_and_says_how_to_go_on(matrix_file, tmp_path):
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_who_is_asked_to_end_twice_stops_tidily_and_says_how_to_go_on(
+    matrix_file, tmp_path, number, code
+):
     store, mark = tmp_path / "s.db", uuid.uuid4().hex
     run = started(matrix_file("wanderer", "hangs", seeds=SEEDS), store, mark)
-    os.killpg(run.pid, signal.SIGINT)
-    _, stderr = run.communicate(timeout=10)
-    assert run.returncode == 130
+    os.killpg(run.pid, number)
+    time.sleep(0.01)
+    os.killpg(run.pid, number)
+    _, stderr = run.communicate(timeout=60)
+    assert run.returncode == code
     assert "to go on, give the same command again" in stderr
     assert "Traceback" not in stderr
     assert gone(mark)
     assert 3 <= len(read_runs(store)) < 2 * SEEDS
     assert set(read_runs(store)["status"]) <= {"solved", "timed_out"}
+
+
+def test_a_store_that_a_planner_deletes_is_written_anew_and_the_command_says_so(
+    hostile, wall_file, tmp_path
+):
+    matrix, store = tmp_path / "matrix.toml", tmp_path / "s.db"
+    matrix.write_text(
+        f'scenes = ["{wall_file}"]\nseeds = 2\n[[planner]]\nplanner = "deletes"\n'
+        f'settings = {{ pattern = "{store}*" }}\n[[planner]]\nplanner = "wanderer"\n'
+    )
+    told = in_own_process("run", matrix, "--store", store, "--jobs", 1).err
+    assert f"kbga-bench: warning: {store}: was deleted while it was written to" in told
+    assert len(read_runs(store)) == 4
+    check_integrity(store)

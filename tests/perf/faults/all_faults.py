@@ -56,7 +56,12 @@ def _signal_server(number: int) -> Callable[[Stage], Said]:
 
 
 def _signal_worker(number: int) -> Callable[[Stage], Said]:
-    return _struck(lambda stage, command: stage.worker_of(command).send_signal(number))
+    def strike(stage: Stage) -> Said:
+        command = stage.start()
+        stage.worker().send_signal(number)
+        return stage.finish(command)
+
+    return strike
 
 
 def _stop_for_a_while(stage: Stage, command: "subprocess.Popen[str]") -> None:
@@ -77,19 +82,23 @@ def _interrupt_twice(stage: Stage, command: "subprocess.Popen[str]") -> None:
     os.killpg(command.pid, signal.SIGINT)
 
 
+LINGERS = 'settings = { file = "FOLDER/pid" }'
+
 OF_PROCESSES = [
     Fault("kill -9 of the harness", "SIGKILL in the middle of a matrix",
           _signal_harness(signal.SIGKILL), seeds=MANY, codes=(-9,)),
     Fault("kill -9 of the fork server", "SIGKILL in the middle of a matrix",
           _signal_server(signal.SIGKILL), seeds=MANY, status=("solved", "crashed")),
     Fault("kill -9 of a run", "SIGKILL of its process", _signal_worker(signal.SIGKILL),
-          seeds=MANY, status=("solved", "crashed"), says="was ended by SIGKILL"),
+          planner="lingers", settings=LINGERS, status=("solved", "crashed"),
+          says="was ended by SIGKILL"),
     Fault("the harness is stopped", f"SIGSTOP, SIGCONT after {STOPPED_S:g} s",
           _struck(_stop_for_a_while), seeds=MANY),
     Fault("the fork server is stopped", "SIGSTOP, and nobody continues it",
           _signal_server(signal.SIGSTOP), seeds=MANY),
     Fault("a run is stopped", "SIGSTOP, and nobody continues it", _signal_worker(signal.SIGSTOP),
-          seeds=MANY, limits="wall_s = 3", status=("solved", "timed_out"), says="more than 3 s"),
+          planner="lingers", settings=LINGERS, limits="wall_s = 20",
+          status=("solved", "timed_out"), says="more than 20 s"),
     Fault("Ctrl-Z and fg", f"SIGTSTP to the group, SIGCONT after {STOPPED_S:g} s",
           _struck(_suspend_for_a_while), seeds=MANY),
     Fault("Ctrl-C", "SIGINT to the group", _signal_group(signal.SIGINT), seeds=MANY,
@@ -288,6 +297,13 @@ def _folder_goes(stage: Stage, _: "subprocess.Popen[str]") -> None:
 
 
 @contextmanager
+def _plugin_file(stage: Stage) -> Iterator[None]:
+    """A file for --plugin, which does something when it is imported, in the command itself too."""
+    (stage.folder / "plugin.py").write_text(HANGS_AT_EXIT, encoding="utf-8")
+    yield
+
+
+@contextmanager
 def _folder_of_its_own(stage: Stage) -> Iterator[None]:
     (stage.folder / stage.place).mkdir()
     yield
@@ -306,6 +322,19 @@ def _without_streams(stage: Stage) -> Said:
 
     return stage.run(before=close)
 
+
+HANGS_AT_EXIT = """
+import atexit, threading, time
+from suite.planner import Plan, Planner, PlanStatus
+atexit.register(time.sleep, 300)
+threading.Thread(target=time.sleep, args=(300,)).start()
+
+class Lasting(Planner):
+    name = "lasting"
+    def plan(self, scene, query, budget, rng, recorder):
+        return Plan(PlanStatus.EXHAUSTED)
+"""
+"""An exit handler that hangs, and a thread that Python would wait for."""
 
 WITHOUT_CACHES: dict[str, str | None] = {
     "HOME": "/nonexistent",
@@ -326,8 +355,11 @@ OF_THE_MACHINE = [
           _on_full_disk("tables", "--format", "csv", "--output", "FULL"), place="disk",
           ground=_small_disk, needs=may_mount, codes=(2,), says="exports.*No space left"),
     Fault("the disk is full for `export`", "rows go to a full file system",
-          _on_full_disk("export", "csv", "--output", "FULL"), place="disk",
+          _on_full_disk("export", "FULL", "--to", "csv"), place="disk",
           ground=_small_disk, needs=may_mount, codes=(2,), says="exports.*No space left"),
+    Fault("the disk is full for Planner Arena", "a database on a full file system",
+          _on_full_disk("export", "FULL/arena.db", "--to", "planner-arena"), place="disk",
+          ground=_small_disk, needs=may_mount, codes=(2,), says="arena.db: .*(No space left|full)"),
     Fault("the disk is full for `report`", "the page goes to a full file system",
           _on_full_disk("report", "-o", "FULL/report.html"), place="disk",
           ground=_small_disk, needs=may_mount, codes=(2,), says="exports.*No space left"),
@@ -392,6 +424,9 @@ OF_PLANNERS = [
           planner="hangs-at-exit-of-the-server"),
     Fault("a thread in the fork server", "started in `warm_up`, not daemonic",
           planner="leaves-a-thread-in-warm-up"),
+    Fault("an atexit and a thread at import", "by a file for --plugin, in the command too",
+          planner="lasting", status=("exhausted",), ground=_plugin_file,
+          options=("--jobs", "2", "--plugin", "FOLDER/plugin.py")),
     Fault("memory beyond the limit", "as fast as pages are filled", planner="eats-all-memory",
           status=("out_of_memory",), says="above 600 MB"),
     Fault("recursion without end", "in Python", planner="recurses-without-end",

@@ -117,7 +117,8 @@ class Stage:
         before : done in the new process.
         """
         matrix = str(self.folder / "matrix.toml")
-        arguments = ["run", matrix, "--store", str(self.store), *self.options]
+        options = [option.replace("FOLDER", str(self.folder)) for option in self.options]
+        arguments = ["run", matrix, "--store", str(self.store), *options]
         return self.begin([*COMMAND, *arguments], environment, before)
 
     def begin(
@@ -181,11 +182,11 @@ class Stage:
         ]
         return server
 
-    def worker_of(self, command: "subprocess.Popen[str]") -> psutil.Process:
-        """The process of a run, as soon as there is one."""
-        server = self.server_of(command)
-        wait_until(lambda: bool(server.children()))
-        return server.children()[0]
+    def worker(self) -> psutil.Process:
+        """The process of a run of the planner `lingers`, which tells it, as soon as there is one."""
+        file = self.folder / "pid"
+        wait_until(lambda: file.exists() and file.read_text().endswith("."))
+        return psutil.Process(int(file.read_text()[:-1]))
 
     def left(self) -> list[psutil.Process]:
         """Processes of this stage that do not end by themselves."""

@@ -109,6 +109,23 @@ class Sleeper(_Base):
 
 
 @dataclass(frozen=True)
+class LingersSettings:
+    file: str = "pid"
+    seconds: float = 4.0
+
+
+class Lingers(_Base):
+    """Says in a file which process it is, and sleeps."""
+
+    name = "lingers"
+    Settings = LingersSettings
+
+    def misbehave(self):
+        Path(self.settings.file).write_text(f"{os.getpid()}.")
+        time.sleep(self.settings.seconds)
+
+
+@dataclass(frozen=True)
 class DrowsySettings:
     folder: str = "."
 
