@@ -1,9 +1,10 @@
 """Every fault of the table, for real: `make faults`.
 
-python -m tests.perf.faults results/harness [--only WORDS]
+python -m tests.perf.faults results/harness [--only PATTERN]
 """
 
 import argparse
+import re
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -16,7 +17,7 @@ from tests.suite.harness.hostile_site import make_site
 
 
 def lines(only: str) -> list[Line]:
-    """What came of each fault whose name has these words."""
+    """What came of each fault whose name matches a pattern."""
     found = []
     with TemporaryDirectory(prefix="faults-") as name:
         site, first = Path(name, "site"), Path(name, "first")
@@ -25,12 +26,15 @@ def lines(only: str) -> list[Line]:
         make_site(site)
         rows = first_rows(first, site)
         for fault in FAULTS:
-            if only in fault.name:
+            if re.search(only, fault.name):
                 missing = fault.needs()
                 with TemporaryDirectory(prefix="fault-") as folder:
                     outcome = None if missing else suffer(fault, Path(folder), site, rows)
-                    found.append(line_of(fault, outcome, missing, Path(folder)))
-                sys.stderr.write(f"{found[-1].fault}: {found[-1].verdict}\n")
+                    line = line_of(fault, outcome, missing, Path(folder))
+                found.append(line)
+                is_bad = line.verdict.startswith("NOT")
+                words = f"\n    {line.words}\n    {line.row}" if is_bad else ""
+                sys.stderr.write(f"{line.fault}: {line.verdict}{words}\n")
     return found
 
 
@@ -38,7 +42,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Try the faults, write the table and print it; 1 if one is not contained."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--only", default="", help="those whose names have these words")
+    parser.add_argument("--only", default="", help="those whose names match this pattern")
     given = parser.parse_args(arguments)
     found = lines(given.only)
     sys.stdout.write(write(found, given.folder))

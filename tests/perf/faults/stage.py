@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import sqlite3
 import subprocess
 import time
@@ -110,16 +111,18 @@ class Stage:
         *,
         environment: Mapping[str, str | None] | None = None,
         before: Callable[[], None] = lambda: None,
+        prefix: Sequence[str] = (),
     ) -> "subprocess.Popen[str]":
         """Start `kbga-bench run`, as the leader of a session.
 
         environment : changes; a variable of None is taken away.
         before : done in the new process.
+        prefix : a program that starts it.
         """
         matrix = str(self.folder / "matrix.toml")
         options = [option.replace("FOLDER", str(self.folder)) for option in self.options]
         arguments = ["run", matrix, "--store", str(self.store), *options]
-        return self.begin([*COMMAND, *arguments], environment, before)
+        return self.begin([*prefix, *COMMAND, *arguments], environment, before)
 
     def begin(
         self,
@@ -139,6 +142,8 @@ class Stage:
 
         def prepare() -> None:
             hear_interrupts()
+            # So does `nohup` with this one, and this command may have been started by it.
+            signal.signal(signal.SIGHUP, signal.SIG_DFL)
             before()
 
         return subprocess.Popen(
@@ -183,7 +188,7 @@ class Stage:
         return server
 
     def worker(self) -> psutil.Process:
-        """The process of a run of the planner `lingers`, which tells it, as soon as there is one."""
+        """The process of a run of the planner `lingers`, as soon as there is one."""
         file = self.folder / "pid"
         wait_until(lambda: file.exists() and file.read_text().endswith("."))
         return psutil.Process(int(file.read_text()[:-1]))
