@@ -156,11 +156,11 @@ def _run_on_full_disk(spare: int) -> Callable[[Stage], Said]:
 
 
 def _on_full_disk(*words: str) -> Callable[[Stage], Said]:
-    """Another command, which writes where nothing can be written; FULL stands for that place."""
+    """Another command on the store, when nothing more can be written; FULL is such a place."""
 
     def strike(stage: Stage) -> Said:
         stage.run()
-        disk = stage.store.parent
+        disk = stage.folder / "disk"
         exports = disk / "exports"
         exports.mkdir()
         filler = _fill(disk)
@@ -361,17 +361,20 @@ OF_THE_MACHINE = [
           ground=_small_disk, needs=may_mount, codes=(2,),
           says="store.db: .*disk.*(Make room|full)"),
     Fault("the disk is full for `tables --output`", "CSV files go to a full file system",
-          _on_full_disk("tables", "--format", "csv", "--output", "FULL"), place="disk",
+          _on_full_disk("tables", "--format", "csv", "--output", "FULL"),
           ground=_small_disk, needs=may_mount, codes=(2,), says="exports.*No space left"),
     Fault("the disk is full for `export`", "rows go to a full file system",
-          _on_full_disk("export", "FULL", "--to", "csv"), place="disk",
+          _on_full_disk("export", "FULL", "--to", "csv"),
           ground=_small_disk, needs=may_mount, codes=(2,), says="exports.*No space left"),
     Fault("the disk is full for Planner Arena", "a database on a full file system",
-          _on_full_disk("export", "FULL/arena.db", "--to", "planner-arena"), place="disk",
+          _on_full_disk("export", "FULL/arena.db", "--to", "planner-arena"),
           ground=_small_disk, needs=may_mount, codes=(2,), says="arena.db: .*(No space left|full)"),
     Fault("the disk is full for `report`", "the page goes to a full file system",
-          _on_full_disk("report", "-o", "FULL/report.html"), place="disk",
+          _on_full_disk("report", "-o", "FULL/report.html"),
           ground=_small_disk, needs=may_mount, codes=(2,), says="exports.*No space left"),
+    Fault("`tables` on a full disk", "the store on a file system without a free byte",
+          _on_full_disk("tables"), place="disk", ground=_small_disk, needs=may_mount,
+          says="wanderer"),
     Fault("a file may have 300 kB", "RLIMIT_FSIZE, as a quota", _limited(resource.RLIMIT_FSIZE,
           300_000), seeds=60, planner="visibility-graph", codes=(2,),
           says=f"store.db: .*({MEND}|full)"),
@@ -381,7 +384,8 @@ OF_THE_MACHINE = [
     Fault("`tables` in a read-only folder", "the same, for reading", _tables_on_read_only,
           place="disk", ground=_small_disk, needs=may_mount, says="wanderer"),
     Fault("the store is another user's", "its folder is, too", _in_a_folder_of_nobody,
-          place="out", ground=_folder_of_its_own, needs=may_lose_rights, codes=(2,), says=f"store.db: .*({MEND})"),
+          place="out", ground=_folder_of_its_own, needs=may_lose_rights, codes=(2,),
+          says=f"store.db: .*({MEND})"),
     Fault("another harness writes to the store", "a second one is started beside it",
           _beside_another_harness, seeds=MANY, codes=(2,),
           says=r"store.db: another process is writing to it \(process"),
