@@ -32,6 +32,7 @@ from suite.store.write import open_store
 from tests.suite.harness.records import make_cell, make_record
 
 NOBODY = 65534
+"""A user that owns nothing."""
 
 
 @pytest.fixture
@@ -300,6 +301,21 @@ def test_a_disk_that_can_take_no_more_is_an_error_and_nothing_is_corrupted(file)
     with closing(sqlite3.connect(file)) as connection:
         assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
     assert len(read_runs(file)) == int(number) > 10
+
+
+READER = """
+import resource, sys
+from pathlib import Path
+from suite.store.read import read_runs
+resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+print(len(read_runs(Path(sys.argv[1]))))
+"""
+
+
+def test_where_nothing_more_can_be_written_a_store_can_be_read(file):
+    filled(file, make_record())
+    told = subprocess.run([sys.executable, "-c", READER, str(file)], capture_output=True, text=True)
+    assert (told.stdout, told.stderr) == ("1\n", "")
 
 
 @contextmanager
