@@ -114,7 +114,7 @@ harness: setup
 	$(BIN)/python -m tests.perf.harness results/harness $(ARGS)
 
 # What goes wrong on real machines is brought about here, for real. As root it fills and locks small
-# disks of its own; needs Debian's libfaketime for the clock. What is missing is said in the table.
+# disks of its own; another clock needs a C compiler. What was not tried is said in the table.
 faults: setup
 	$(BIN)/python -m tests.perf.faults results/harness $(ARGS)
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import pandas as pd
 import pytest
 
 from tests.perf.faults.all_faults import FAULTS
@@ -76,9 +77,20 @@ def test_the_table_counts_what_was_not_tried_and_names_no_folder_and_no_machine(
         line_of(SEGFAULT, None, "not tried: no right to mount", tmp_path),
     ]
     assert table(lines).title == "Faults: 1 of 2 contained, 1 not tried"
-    assert "no right to mount" in write(lines, tmp_path / "results")
-    written = (tmp_path / "results" / "faults.csv").read_text()
+    assert "no right to mount" in write(lines[2:], tmp_path, [SEGFAULT.name])
+    write(lines[1:2], tmp_path, [SEGFAULT.name])
+    written = (tmp_path / "faults.csv").read_text()
     assert "FOLDER/store.db: another process (process N on HOST, matrix) writes" in written
+
+
+def test_a_fault_that_is_not_tried_now_keeps_its_line(tmp_path):
+    other = replace(SEGFAULT, name="another")
+    order = ["another", "gone", SEGFAULT.name]
+    write([line_of(other, None, "not tried: no root", tmp_path)], tmp_path, order)
+    write([line_of(SEGFAULT, CONTAINED, None, tmp_path)], tmp_path, order)
+    frame = pd.read_csv(tmp_path / "faults.csv", keep_default_na=False)
+    assert frame["fault"].tolist() == ["another", SEGFAULT.name]
+    assert frame["verdict"].tolist() == ["not tried: no root", "contained"]
 
 
 @pytest.fixture(scope="module")

@@ -45,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--only", default="", help="those whose names match this pattern")
     given = parser.parse_args(arguments)
     found = lines(given.only)
-    sys.stdout.write(write(found, given.folder))
+    sys.stdout.write(write(found, given.folder, [fault.name for fault in FAULTS]))
     return int(any(line.verdict.startswith("NOT") for line in found))
 
 

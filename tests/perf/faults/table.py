@@ -1,6 +1,7 @@
 """The table of faults: what became of the row, the matrix, the store and the command."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -90,10 +91,23 @@ def table(lines: list[Line]) -> Table:
     )
 
 
-def write(lines: list[Line], folder: Path) -> str:
-    """Write the table as Markdown and CSV, and return it as plain text."""
+def write(lines: list[Line], folder: Path, order: Sequence[str]) -> str:
+    """Write the table as Markdown and CSV, and return it as plain text.
+
+    order : names of all faults. Those that were not tried now keep the line that is there.
+    """
     folder.mkdir(parents=True, exist_ok=True)
-    made = table(lines)
+    known = {line.fault: line for line in (*_written(folder), *lines)}
+    made = table([known[name] for name in order if name in known])
     (folder / "faults.md").write_text(render(made, TableFormat.MARKDOWN), encoding="utf-8")
     (folder / "faults.csv").write_text(render(made, TableFormat.CSV), encoding="utf-8")
     return render(made, TableFormat.TABLE)
+
+
+def _written(folder: Path) -> list[Line]:
+    """The lines of the table that is there."""
+    file = folder / "faults.csv"
+    if not file.exists():
+        return []
+    frame = pd.read_csv(file, dtype=str, keep_default_na=False)
+    return [Line(*row) for row in frame.itertuples(index=False, name=None)]
