@@ -404,7 +404,7 @@ OF_THE_MACHINE = [
           ground=_small_disk, needs=may_mount, codes=(2,), says="exports.*No space left"),
     Fault("the disk is full for Planner Arena", "a database on a full file system",
           _on_full_disk("export", "FULL/arena.db", "--to", "planner-arena"),
-          ground=_small_disk, needs=may_mount, codes=(2,), says="arena.db: .*(No space left|full)"),
+          ground=_small_disk, needs=may_mount, codes=(2,), says="exports.*No space left"),
     Fault("the disk is full for `report`", "the page goes to a full file system",
           _on_full_disk("report", "-o", "FULL/report.html"),
           ground=_small_disk, needs=may_mount, codes=(2,), says="exports.*No space left"),
