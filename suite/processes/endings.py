@@ -1,6 +1,7 @@
 """The signals that ask a process to end: Ctrl-C, a batch system's, a closed terminal's."""
 
 import signal
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -31,9 +32,12 @@ class Asked(KeyboardInterrupt):
 def ending_tidily() -> Iterator[None]:
     """Raise :class:`Asked` when this process is asked to end, and once only.
 
-    A signal that whoever started the process had it ignore, as ``nohup`` does, stays ignored. For
-    the main thread.
+    A signal that whoever started the process had it ignore, as ``nohup`` does, stays ignored. In
+    any thread but the main one, which alone hears signals, nothing is changed.
     """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
     numbers = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
     before = {number: signal.getsignal(number) for number in numbers}
     asked_at: list[float] = []
