@@ -1,6 +1,8 @@
 """The table of faults: what became of the row, the matrix, the store and the command."""
 
+import platform
 import re
+import sqlite3
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -87,7 +89,8 @@ def table(lines: list[Line]) -> Table:
         "Each fault strikes `kbga-bench run` on a small matrix, half of whose runs are of a "
         "planner that does what it should, in a store that has rows already. Contained means: "
         + "; ".join(CRITERIA)
-        + ". Words: the last line that the command printed.",
+        + ". Words: the last line that the command printed. Last tried with Python "
+        f"{platform.python_version()} and SQLite {sqlite3.sqlite_version} on {platform.system()}.",
     )
 
 
