@@ -319,9 +319,10 @@ def _with_long_tmpdir(stage: Stage) -> Said:
 
 def _without_temporary_folders(stage: Stage) -> Said:
     """TMPDIR is full, as it may be on a cluster's node."""
-    _fill(stage.store.parent)
-    said = stage.run(environment={"TMPDIR": str(stage.store.parent)})
-    (stage.store.parent / "filler").unlink()
+    disk = stage.folder / "disk"
+    filler = _fill(disk)
+    said = stage.run(environment={"TMPDIR": str(disk)})
+    filler.unlink()
     return said
 
 
@@ -382,7 +383,9 @@ class Lasting(Planner):
 """An exit handler that hangs, and a thread that Python would wait for."""
 
 WITHOUT_CACHES: dict[str, str | None] = {
-    "HOME": "/nonexistent",
+    # Not even root can make it.
+    "HOME": "/proc/nonexistent",
+    "NUMBA_CACHE_DIR": None,
     "XDG_CACHE_HOME": None,
     "XDG_CONFIG_HOME": None,
 }
@@ -436,7 +439,7 @@ OF_THE_MACHINE = [
     Fault("TMPDIR has a long name", "of more than 108 characters, too many for a socket",
           _with_long_tmpdir),
     Fault("TMPDIR is full", "a file system without a free byte", _without_temporary_folders,
-          place="disk", ground=_small_disk, needs=may_mount, codes=(0, 2)),
+          ground=_small_disk, needs=may_mount, codes=(0, 2)),
     Fault("HOME can't be written", "HOME names no folder, and no cache is named",
           _with(WITHOUT_CACHES)),
     Fault("64 open files", "ulimit -n 64", _limited(resource.RLIMIT_NOFILE, 64)),

@@ -100,9 +100,10 @@ class Outcome:
         return ", ".join(f"{status} x {n}" for status, n in sorted(counts.items())) or "none"
 
     def words(self) -> str:
-        """The last line that the command printed."""
+        """The line of what the command printed that was wanted, or else the last one."""
         lines = self.said.text.strip().splitlines()
-        return lines[-1] if lines else ""
+        wanted = [line for line in lines if self.fault.says and re.search(self.fault.says, line)]
+        return (wanted or lines or [""])[-1]
 
     def reason(self) -> str:
         """What the struck planner's row says, in short."""

@@ -15,7 +15,7 @@ from suite.report.table import Table
 from tests.perf.faults.fault import CRITERIA, Fault, Outcome
 
 MOST_WORDS = 240
-"""Letters of a command's last line that a table has room for."""
+"""Letters of a command's words that a table has room for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,7 @@ def table(lines: list[Line]) -> Table:
         "Each fault strikes `kbga-bench run` on a small matrix, half of whose runs are of a "
         "planner that does what it should, in a store that has rows already. Contained means: "
         + "; ".join(CRITERIA)
-        + ". Words: the last line that the command printed. Last tried with Python "
+        + ". Words: what the command printed of it, or its last line. Last tried with Python "
         f"{platform.python_version()} and SQLite {sqlite3.sqlite_version} on {platform.system()}.",
     )
 
