@@ -30,7 +30,7 @@ LITTLE_BYTES = 150_000
 NOBODY = 65534
 
 
-def _struck(blow: Callable[[Stage, "subprocess.Popen[str]"], None]) -> Callable[[Stage], Said]:
+def _struck(blow: Callable[[Stage, "subprocess.Popen[bytes]"], None]) -> Callable[[Stage], Said]:
     """Let a blow fall in the middle of a matrix."""
 
     def strike(stage: Stage) -> Said:
@@ -64,19 +64,19 @@ def _signal_worker(number: int) -> Callable[[Stage], Said]:
     return strike
 
 
-def _stop_for_a_while(stage: Stage, command: "subprocess.Popen[str]") -> None:
+def _stop_for_a_while(stage: Stage, command: "subprocess.Popen[bytes]") -> None:
     os.kill(command.pid, signal.SIGSTOP)
     time.sleep(STOPPED_S)
     os.kill(command.pid, signal.SIGCONT)
 
 
-def _suspend_for_a_while(stage: Stage, command: "subprocess.Popen[str]") -> None:
+def _suspend_for_a_while(stage: Stage, command: "subprocess.Popen[bytes]") -> None:
     os.killpg(command.pid, signal.SIGTSTP)
     time.sleep(STOPPED_S)
     os.killpg(command.pid, signal.SIGCONT)
 
 
-def _interrupt_twice(stage: Stage, command: "subprocess.Popen[str]") -> None:
+def _interrupt_twice(stage: Stage, command: "subprocess.Popen[bytes]") -> None:
     os.killpg(command.pid, signal.SIGINT)
     time.sleep(0.01)
     os.killpg(command.pid, signal.SIGINT)
@@ -229,7 +229,7 @@ def _beside_another_harness(stage: Stage) -> Said:
     stage.worker()
     second = stage.run()
     first.kill()
-    stage.finish(first)
+    first.wait()
     return second
 
 
@@ -331,14 +331,14 @@ def _limited(kind: int, value: int) -> Callable[[Stage], Said]:
 
 
 def _store_goes(pattern: str) -> Callable[[Stage], Said]:
-    def blow(stage: Stage, _: "subprocess.Popen[str]") -> None:
+    def blow(stage: Stage, _: "subprocess.Popen[bytes]") -> None:
         for file in stage.store.parent.glob(pattern):
             file.unlink()
 
     return _struck(blow)
 
 
-def _folder_goes(stage: Stage, _: "subprocess.Popen[str]") -> None:
+def _folder_goes(stage: Stage, _: "subprocess.Popen[bytes]") -> None:
     shutil.rmtree(stage.store.parent)
 
 
@@ -463,8 +463,8 @@ OF_PLANNERS = [
           limits="wall_s = 170\nmemory_mb = 1500", seeds=1),
     Fault("a path of a million points", "16 MB", planner="goes-by-a-million-points", seeds=1,
           limits="wall_s = 170\nmemory_mb = 1500"),
-    Fault("a message of 100 MB", "a path of 6.25 million points, most repeated", planner="sends-megabytes",
-          seeds=1, limits="wall_s = 170\nmemory_mb = 3000"),
+    Fault("a message of 100 MB", "a path of 6.25 million points, most repeated",
+          planner="sends-megabytes", seeds=1, limits="wall_s = 170\nmemory_mb = 3000"),
     Fault("a message that is too large", "a path of 18 million points", planner="sends-too-much",
           seeds=1, limits="wall_s = 170\nmemory_mb = 6000", status=("error",),
           says="288 MB"),

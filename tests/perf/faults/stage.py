@@ -23,6 +23,7 @@ from tests.suite.harness.hostile_site import write_wall
 BOUND_S = 180.0
 """A command that is not back by then never will be: the slowest fault here takes a tenth of it."""
 
+SAID = "said.txt"
 GONE_S = 10.0
 POLL_S = 0.02
 
@@ -112,7 +113,7 @@ class Stage:
         environment: Mapping[str, str | None] | None = None,
         before: Callable[[], None] = lambda: None,
         prefix: Sequence[str] = (),
-    ) -> "subprocess.Popen[str]":
+    ) -> "subprocess.Popen[bytes]":
         """Start `kbga-bench run`, as the leader of a session.
 
         environment : changes; a variable of None is taken away.
@@ -129,7 +130,7 @@ class Stage:
         command: Sequence[str],
         environment: Mapping[str, str | None] | None = None,
         before: Callable[[], None] = lambda: None,
-    ) -> "subprocess.Popen[str]":
+    ) -> "subprocess.Popen[bytes]":
         """Start any command with this stage's environment."""
         paths = [str(self.site), os.environ.get("PYTHONPATH", "")]
         wanted: dict[str, str | None] = {
@@ -146,39 +147,41 @@ class Stage:
             signal.signal(signal.SIGHUP, signal.SIG_DFL)
             before()
 
-        return subprocess.Popen(
-            command,
-            env={name: value for name, value in wanted.items() if value is not None},
-            cwd=self.folder,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors="replace",
-            start_new_session=True,
-            preexec_fn=prepare,
-        )
+        # Not into a pipe: whoever reads that waits for all that have it, and not for the command.
+        said = self.folder / SAID
+        with said.open("w") as output:
+            return subprocess.Popen(
+                command,
+                env={name: value for name, value in wanted.items() if value is not None},
+                cwd=self.folder,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                preexec_fn=prepare,
+            )
 
     def run(self, **options: Any) -> Said:
         """Run `kbga-bench run` to its end."""
         return self.finish(self.start(**options))
 
-    def finish(self, command: "subprocess.Popen[str]") -> Said:
+    def finish(self, command: "subprocess.Popen[bytes]") -> Said:
         """Wait for the end of a command."""
         began = time.monotonic()
+        code: int | None = None
         try:
-            text, _ = command.communicate(timeout=BOUND_S)
+            code = command.wait(BOUND_S)
         except subprocess.TimeoutExpired:
             self.sweep()
-            text, _ = command.communicate()
-            return Said(None, text, time.monotonic() - began)
-        return Said(command.returncode, text, time.monotonic() - began)
+            command.wait()
+        text = (self.folder / SAID).read_text(encoding="utf-8", errors="replace")
+        return Said(code, text, time.monotonic() - began)
 
     def wait_for_rows(self, count: int) -> None:
         """Until the store has so many."""
         wait_until(lambda: len(self.look().rows) >= count)
 
-    def server_of(self, command: "subprocess.Popen[str]") -> psutil.Process:
+    def server_of(self, command: "subprocess.Popen[bytes]") -> psutil.Process:
         """The fork server of a command that runs runs."""
         (server,) = [
             child
