@@ -23,7 +23,6 @@ from tests.suite.harness.hostile_site import write_wall
 BOUND_S = 180.0
 """A command that is not back by then never will be: the slowest fault here takes a tenth of it."""
 
-SAID = "said.txt"
 GONE_S = 10.0
 POLL_S = 0.02
 
@@ -73,6 +72,7 @@ class Stage:
     limits : TOML of the limits.
     place : folder of the store, below the other.
     options : of each `run` of the matrix.
+    said : what each command prints, by its process.
     """
 
     folder: Path
@@ -83,6 +83,7 @@ class Stage:
     place: str = "."
     options: Sequence[str] = ()
     mark: str = field(default_factory=lambda: uuid.uuid4().hex)
+    said: dict[int, Path] = field(default_factory=dict)
 
     @property
     def store(self) -> Path:
@@ -148,9 +149,9 @@ class Stage:
             before()
 
         # Not into a pipe: whoever reads that waits for all that have it, and not for the command.
-        said = self.folder / SAID
+        said = self.folder / f"said-{uuid.uuid4().hex}.txt"
         with said.open("w") as output:
-            return subprocess.Popen(
+            process = subprocess.Popen(
                 command,
                 env={name: value for name, value in wanted.items() if value is not None},
                 cwd=self.folder,
@@ -160,6 +161,8 @@ class Stage:
                 start_new_session=True,
                 preexec_fn=prepare,
             )
+        self.said[process.pid] = said
+        return process
 
     def run(self, **options: Any) -> Said:
         """Run `kbga-bench run` to its end."""
@@ -174,7 +177,7 @@ class Stage:
         except subprocess.TimeoutExpired:
             self.sweep()
             command.wait()
-        text = (self.folder / SAID).read_text(encoding="utf-8", errors="replace")
+        text = self.said[command.pid].read_text(encoding="utf-8", errors="replace")
         return Said(code, text, time.monotonic() - began)
 
     def wait_for_rows(self, count: int) -> None:
