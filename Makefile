@@ -9,8 +9,8 @@ STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
 
-.PHONY: help setup setup-dev browser bench test test-slow torture lint docs perf harness faults results \
-	search-readings clean
+.PHONY: help setup setup-dev browser bench test test-slow torture lint docs perf harness faults \
+	results search-readings clean
 
 help:
 	@echo "make bench     run the matrix paper-static and print its tables (ARGS=--quick: two seeds)"
