@@ -7,10 +7,11 @@ and nothing else. pandas reads it; see :mod:`suite.store.read`.
 import json
 import math
 import sqlite3
+import tempfile
 import warnings
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from dataclasses import astuple
 from pathlib import Path
 from types import TracebackType
@@ -19,7 +20,7 @@ from typing import Any, Self
 import numpy as np
 from filelock import BaseFileLock, FileLock, Timeout
 
-from suite.errors import StoreError
+from suite.errors import StoreError, writing
 from suite.planner import Snapshot
 from suite.store.connection import (
     check_is_store,
@@ -31,6 +32,9 @@ from suite.store.connection import (
 from suite.store.read import read_sessions
 from suite.store.record import Cell, RunRecord, canonical_json, short_hash
 from suite.store.schema import BELONGINGS, add_columns, columns_now, create_tables
+
+RESTORES = 100
+"""How often it is tried to write a store anew that is deleted again and again."""
 
 
 class Store:
@@ -183,39 +187,52 @@ class Store:
         SQLite would go on in the deleted file without a word, and all rows would be lost at the
         end. Until then everything is still there, for this connection alone.
         """
-        if self._files == _identities(self.path):
+        there = _identities(self.path)
+        if there == self._files:
             return
-        if self.path.exists() and _identities(self.path)[0] != self._files[0]:
-            kept = self._saved_beside()
+        with explained(self.path):
+            rows = self._connection.serialize()
+        if there[0] not in (None, self._files[0]):
+            kept = _kept(rows, Path(f"{self.path}.rescued"))
             raise StoreError(
                 f"{self.path}: was replaced by another file while it was written to. Its rows are "
                 f"kept in {kept}: put that in its place, and run the same command again."
             )
-        saved = self._saved_beside()
         # Closed before the new file is there: SQLite deletes the journals of its name with it.
         self._connection.close()
-        if not _lock_file(self.path).exists():
-            self._lock.release()
-            self._lock = _locked(self.path)
-        saved.replace(self.path)
-        self._connection = _open_for_writing(self.path)
-        self._files = _identities(self.path)
-        (rows,) = self._connection.execute("SELECT count(*) FROM runs").fetchone()
+        self._write_anew(rows)
+        (count,) = self._connection.execute("SELECT count(*) FROM runs").fetchone()
         warnings.warn(
             f"{self.path}: was deleted while it was written to, or its journal was. It is written "
-            f"anew, with all its {rows} rows. Find out who deletes it: a planner?",
+            f"anew, with all its {count} rows. Find out who deletes it: a planner?",
             stacklevel=2,
         )
 
-    def _saved_beside(self) -> Path:
-        """A whole copy of the store as this connection sees it, in a file of another name."""
-        _make_folder(self.path)
-        kept = Path(f"{self.path}.rescued")
-        with explained(kept):
-            kept.unlink(missing_ok=True)
-            with closing(connect(kept, writable=True)) as copy:
-                self._connection.backup(copy)
-        return kept
+    def _write_anew(self, rows: bytes) -> None:
+        """Put a file of these bytes in its place; whoever deletes it may do so in the middle."""
+        for _ in range(RESTORES):
+            try:
+                _make_folder(self.path)
+                if not _lock_file(self.path).exists():
+                    self._lock.release()
+                    self._lock = _locked(self.path)
+                kept = _kept(rows, Path(f"{self.path}.rescued"))
+                wanted = _identity(kept)
+                kept.replace(self.path)
+                connection = _open_for_writing(self.path)
+            except (StoreError, OSError):
+                continue
+            files = _identities(self.path)
+            # Deleted a moment ago, it would have been made anew as an empty one.
+            if files[0] == wanted and None not in files:
+                self._connection, self._files = connection, files
+                return
+            connection.close()
+        kept = _kept(rows, Path(tempfile.mkdtemp(prefix="kbga-bench-"), self.path.name))
+        raise StoreError(
+            f"{self.path}: was deleted while it was written to, and can't be written anew. Its "
+            f"rows are kept in {kept}: put that in its place, and run the same command again."
+        )
 
 
 def open_store(path: Path, *, create: bool = True) -> Store:
@@ -320,6 +337,13 @@ def is_being_written(path: Path) -> bool:
     except OSError:
         # No right to write there: nobody to ask, and nothing that the caller could disturb.
         return False
+
+
+def _kept(rows: bytes, file: Path) -> Path:
+    """A store's bytes, written to a file."""
+    with writing(file, StoreError):
+        file.write_bytes(rows)
+    return file
 
 
 def _identities(path: Path) -> tuple[tuple[int, int] | None, ...]:

@@ -1,8 +1,10 @@
+import itertools
 import os
 import shutil
 import sqlite3
 import subprocess
 import sys
+import warnings
 from contextlib import closing, contextmanager
 from dataclasses import fields
 from pathlib import Path
@@ -373,6 +375,42 @@ def test_a_store_is_written_anew_with_the_folder_that_it_was_in(file):
     with pytest.warns(UserWarning, match="was deleted while it was written to"):
         fill_and_delete(file, lambda: shutil.rmtree(file.parent))
     check_is_whole(file, rows=3)
+
+
+def test_a_store_survives_who_deletes_it_without_end(file):
+    with warnings.catch_warnings(record=True) as told, open_store(file) as store:
+        warnings.simplefilter("always")
+        store.begin_session({})
+        with deleter(file):
+            for seed in itertools.count():
+                store.add(make_record(make_cell(seed=seed)))
+                if len(told) >= 3:
+                    break
+    check_is_whole(file, rows=seed + 1)
+
+
+@contextmanager
+def deleter(file):
+    """Within, a process deletes the store and all beside it, again and again."""
+    process = subprocess.Popen([sys.executable, "-c", DELETER, f"{file}*"], stdout=subprocess.PIPE)
+    try:
+        process.stdout.readline()
+        yield
+    finally:
+        process.kill()
+        process.communicate()
+
+
+DELETER = """
+import sys, time
+from pathlib import Path
+pattern = Path(sys.argv[1])
+print("ready", flush=True)
+while True:
+    for file in pattern.parent.glob(pattern.name):
+        file.unlink(missing_ok=True)
+    time.sleep(0.05)
+"""
 
 
 def test_a_file_that_was_put_in_the_place_of_a_store_stays_and_the_rows_are_kept_beside(file):
