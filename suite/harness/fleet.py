@@ -28,6 +28,7 @@ from suite.processes.multiprocessing_private import (
     main_module,
     make_socket_folder,
     server_pid,
+    start_tracker_quietly,
 )
 
 ANSWER_S = 0.5
@@ -76,6 +77,7 @@ def start_server(warmth: Warmth) -> None:
     """
     with _fleet.turn, _server_environment(warmth):
         try:
+            start_tracker_quietly()
             make_socket_folder()
             forkserver.ensure_running()
         except OSError as error:

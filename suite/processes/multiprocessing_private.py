@@ -16,7 +16,7 @@ import types
 import warnings
 from collections.abc import Callable
 from importlib.machinery import ModuleSpec
-from multiprocessing import forkserver
+from multiprocessing import forkserver, resource_tracker
 from multiprocessing.util import get_temp_dir
 from typing import Any
 
@@ -80,6 +80,28 @@ def make_socket_folder() -> None:
             get_temp_dir()
         finally:
             tempfile.tempdir = before
+
+
+def start_tracker_quietly() -> None:
+    """Start the process that remembers shared memory, if it does not run yet, with nothing to say.
+
+    All runs have its pipe; what a planner writes into that, or forgets to free, it would tell the
+    terminal at length.
+    """
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        kept = os.dup(2)
+    except OSError:  # closed
+        kept = None
+    if kept is not None:
+        os.dup2(nowhere, 2)
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        if kept is not None:
+            os.dup2(kept, 2)
+            os.close(kept)
+        os.close(nowhere)
 
 
 def end_without_farewell(last: Callable[[], None]) -> None:

@@ -105,6 +105,24 @@ def test_a_folder_for_sockets_that_was_deleted_is_made_again(configuration):
     assert os.stat(folder).st_mode & 0o777 == 0o700  # noqa: PTH116
 
 
+GARBAGE = """
+import os, sys
+from multiprocessing import resource_tracker
+from suite.processes.multiprocessing_private import start_tracker_quietly
+start_tracker_quietly()
+print("mine", file=sys.stderr, flush=True)
+os.write(resource_tracker._resource_tracker._fd, b"garbage\\n")
+"""
+
+
+def test_the_tracker_says_nothing_of_what_planners_write_into_its_pipe():
+    done = subprocess.run(
+        [sys.executable, "-c", GARBAGE], capture_output=True, text=True, check=True, timeout=50
+    )
+    # Its standard error is this pipe's other end, if it has it: run waits for that.
+    assert done.stderr == "mine\n"
+
+
 FAREWELL = """
 import atexit, threading, time
 from suite.processes.multiprocessing_private import end_without_farewell
