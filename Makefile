@@ -9,8 +9,8 @@ STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
 
-.PHONY: help setup setup-dev browser kernels bench test test-loaded test-slow torture lint docs perf harness results \
-	search-readings clean
+.PHONY: help setup setup-dev browser kernels bench test test-loaded test-slow torture lint docs \
+	perf harness faults results search-readings clean
 
 help:
 	@echo "make bench     run the matrix paper-static and print its tables (ARGS=--quick: two seeds)"
@@ -19,6 +19,7 @@ help:
 	@echo "make docs      write the reference of the Python interface to out/docs"
 	@echo "make results   remake results/: three quarters of an hour; results-NAME: one folder of it"
 	@echo "make perf, make harness   measure the planners' times, and what the harness costs"
+	@echo "make faults    let happen what may go wrong, and say what came of it (as root: disks too)"
 
 setup: $(INSTALLED)
 setup-dev: $(INSTALLED)-dev
@@ -132,6 +133,11 @@ search-readings: setup
 # What the harness itself costs. On a machine that does nothing else.
 harness: setup
 	$(BIN)/python -m tests.perf.harness results/harness $(ARGS)
+
+# What goes wrong on real machines is brought about here, for real. As root it fills and locks small
+# disks of its own; another clock needs a C compiler. What was not tried is said in the table.
+faults: setup
+	$(BIN)/python -m tests.perf.faults results/harness $(ARGS)
 
 clean:
 	rm -rf .venv out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

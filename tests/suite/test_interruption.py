@@ -9,11 +9,10 @@ import uuid
 from contextlib import closing
 
 import numpy as np
-import psutil
 import pytest
 
 from suite.store.read import read_paths, read_runs
-from tests.suite.commands import COMMAND, hear_interrupts, in_own_process
+from tests.suite.commands import COMMAND, hear_interrupts, in_own_process, marked
 
 SEEDS = 4
 SAMPLE = 3
@@ -69,20 +68,8 @@ def rows_of(store):
         return 0
 
 
-def marked(mark):
-    """Processes that descend from a command, wherever they hang now."""
-    found = []
-    for process in psutil.process_iter():
-        try:
-            if process.environ().get("KBGA_TEST_MARK") == mark:
-                found.append(process)
-        except psutil.Error:
-            continue
-    return found
-
-
-def gone(mark):
-    deadline = time.monotonic() + PATIENCE_S
+def gone(mark, patience_s=PATIENCE_S):
+    deadline = time.monotonic() + patience_s
     while marked(mark) and time.monotonic() < deadline:
         time.sleep(0.05)
     return not marked(mark)
@@ -141,14 +128,33 @@ def test_kill_9_at_any_moment_loses_no_finished_row_and_doubles_none(
     check_resumed(wanted, store, read_runs(store).set_index("key"), read_paths(store))
 
 
-def test_ctrl_c_stops_tidily_and_says_how_to_go_on(matrix_file, tmp_path):
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_who_is_asked_to_end_twice_stops_tidily_and_says_how_to_go_on(
+    matrix_file, tmp_path, number, code
+):
     store, mark = tmp_path / "s.db", uuid.uuid4().hex
     run = started(matrix_file("wanderer", "hangs", seeds=SEEDS), store, mark)
-    os.killpg(run.pid, signal.SIGINT)
+    os.killpg(run.pid, number)
+    time.sleep(0.01)
+    os.killpg(run.pid, number)
     _, stderr = run.communicate(timeout=PATIENCE_S)
-    assert run.returncode == 130
+    assert run.returncode == code
     assert "to go on, give the same command again" in stderr
     assert "Traceback" not in stderr
     assert gone(mark)
     assert 3 <= len(read_runs(store)) <= SEEDS
     assert set(read_runs(store)["status"]) == {"solved"}
+
+
+def test_a_store_that_a_planner_deletes_is_written_anew_and_the_command_says_so(
+    hostile, wall_file, tmp_path
+):
+    matrix, store = tmp_path / "matrix.toml", tmp_path / "s.db"
+    matrix.write_text(
+        f'scenes = ["{wall_file}"]\nseeds = 2\n[[planner]]\nplanner = "deletes"\n'
+        f'settings = {{ pattern = "{store}*" }}\n[[planner]]\nplanner = "wanderer"\n'
+    )
+    told = in_own_process("run", matrix, "--store", store, "--jobs", 1).err
+    assert f"kbga-bench: warning: {store}: was deleted while it was written to" in told
+    assert len(read_runs(store)) == 4
+    check_integrity(store)

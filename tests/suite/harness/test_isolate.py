@@ -1,7 +1,9 @@
 import os
+import shutil
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import replace
+from multiprocessing.util import get_temp_dir
 
 import numpy as np
 import psutil
@@ -138,6 +140,36 @@ def test_a_run_stays_on_the_core_that_it_was_given(run, monkeypatch):
 def test_a_planner_that_kills_the_fork_server_does_not_stop_the_others(run):
     assert run("kills-its-parent").status is PlanStatus.CRASHED
     assert run("wanderer").status is PlanStatus.SOLVED
+
+
+def test_a_fork_server_that_was_stopped_is_woken(run):
+    run("wanderer")
+    (server,) = servers()
+    server.suspend()
+    assert run("wanderer").status is PlanStatus.SOLVED
+    assert servers() == [server]
+
+
+def test_a_fork_server_whose_socket_was_deleted_is_replaced_when_the_other_runs_have_ended(run):
+    run("wanderer")
+    (server,) = servers()
+    with ThreadPoolExecutor(1) as other:
+        slow = other.submit(run, "sleeper", limits=Limits(warm_up_s=120.0))
+        while not server.children():
+            pass
+        shutil.rmtree(get_temp_dir())
+        assert run("wanderer").status is PlanStatus.SOLVED
+        assert slow.result().status is PlanStatus.SOLVED
+    assert servers() != [server]
+
+
+@pytest.mark.slow
+def test_a_record_that_is_too_large_is_a_row_that_says_so(run):
+    record = run("sends-too-much", limits=Limits(warm_up_s=120.0, memory_mb=6000))
+    assert record.status is PlanStatus.ERROR
+    assert record.reason == (
+        "its record is too large (288 MB, above 268 MB): shorten the path, or report less."
+    )
 
 
 def test_memory_counts_for_all_processes_of_a_run_together(run):

@@ -120,3 +120,9 @@ def test_ctrl_c_ends_a_harness_that_is_still_warming_up(harness, marked, send):
     assert said.decode().strip().splitlines()[-1] == "KeyboardInterrupt"
     assert said.decode().count("Traceback") == 1
     wait_until(lambda: not alive(marked))
+
+
+def test_what_plugins_leave_in_the_fork_server_does_not_keep_it(harness, marked):
+    process = harness("hangs-at-exit-of-the-server", "leaves-a-thread-in-warm-up", jobs=2)
+    assert process.wait(2 * PATIENCE_S) == 0
+    wait_until(lambda: not alive(marked))
