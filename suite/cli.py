@@ -4,13 +4,13 @@ import sys
 import warnings
 from collections.abc import Callable
 from importlib.metadata import version as version_of
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from suite.commands import planners, reports, runs, scenes
 from suite.errors import KbgaBenchError
-from suite.processes.output import end_quietly
+from suite.processes.output import end_quietly, show_warning
 
 app = typer.Typer(
     name="kbga-bench",
@@ -65,7 +65,7 @@ def _before_commands(
 
 def main() -> None:
     """Run the command; errors that users can mend are one line and exit code 2."""
-    warnings.showwarning = _show_warning
+    warnings.showwarning = show_warning
     end_quietly()
     try:
         app(prog_name=app.info.name)
@@ -76,7 +76,3 @@ def main() -> None:
 
 def _one_line(text: object) -> str:
     return " ".join(str(text).split())
-
-
-def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    typer.echo(f"kbga-bench: warning: {_one_line(message)}", err=True)

@@ -1,5 +1,6 @@
 """The errors that a user can meet, and hints. A message says what, where, and how to mend it."""
 
+import errno
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import SequenceMatcher, get_close_matches
@@ -46,7 +47,16 @@ def writing(file: Path, error: type[KbgaBenchError] = KbgaBenchError) -> Iterato
     try:
         yield
     except OSError as cause:
-        raise error(f"{file}: can't be written ({cause.strerror}).") from cause
+        raise error(f"{file}: can't be written ({cause.strerror}).{_mend(cause)}") from cause
+
+
+def _mend(cause: OSError) -> str:
+    """What to do about a file that the system refuses to write; nothing, if that is plain."""
+    if cause.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+        return " Make room, or name another place."
+    if cause.errno in (errno.EROFS, errno.EACCES, errno.EPERM):
+        return " Name a place that you may write to."
+    return ""
 
 
 def check_file(

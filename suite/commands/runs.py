@@ -87,7 +87,7 @@ def run(
     if wall time ended it. Such rows are run again, a few times each; what is still contended stays.
 
     Exit code 0 if all is done, 1 if rows of other stores differ that should be the same bit for
-    bit (see `merge`), 130 after Ctrl-C.
+    bit (see `merge`), 130 after Ctrl-C, 143 after SIGTERM.
 
     Example: kbga-bench run paper-static --store out/paper.db --jobs 2
 
@@ -98,6 +98,7 @@ def run(
     from suite.harness.repeat import repeat_contended
     from suite.harness.run import Which, run_matrix
     from suite.harness.snapshots import keep_snapshots
+    from suite.processes.endings import ending_tidily
     from suite.store.write import open_store
 
     use_plugins(plugin)
@@ -117,7 +118,7 @@ def run(
         told = forecast_matrix(wanted, store, jobs=at_a_time, quick=quick, which=which)
         typer.echo(told.as_text())
         return
-    with _executor(address) as cluster, open_store(store) as opened:
+    with ending_tidily(), _executor(address) as cluster, open_store(store) as opened:
         clean = _merge_into(opened, merge or [])
         try:
             with Display(wanted.name) as display:
@@ -149,7 +150,7 @@ def run(
             )
             for note in getattr(interrupt, "__notes__", ()):
                 typer.echo(note, err=True)
-            raise typer.Exit(130) from None
+            raise typer.Exit(getattr(interrupt, "exit_code", 130)) from None
     typer.echo(" ".join(filter(None, (end.summary(), kept.summary()))))
     raise typer.Exit(0 if clean else 1)
 

@@ -14,6 +14,7 @@ from suite.harness.cell import run_cell
 from suite.planner import PlanStatus, Recorder
 from suite.processes.family import adopt_orphans, has_children
 from suite.processes.multiprocessing_private import leave_server, parent_pipe
+from suite.processes.pipes import TooLongError, send
 from suite.processes.random_state import seed_globals
 from suite.store.record import Cell, RunRecord
 
@@ -69,10 +70,19 @@ def run_in_child(
     # A planner that forks may come back twice.
     if os.getpid() == process:
         record = replace(record, snapshots=tuple(recorder.snapshots))
-        messages.send(LastMessage(record, alone=not has_children()))
+        _send_last(messages, LastMessage(record, alone=not has_children()))
     # Without the interpreter's farewell: destructors of a planner's libraries may hang or crash,
     # and threads that it left running would be waited for.
     os._exit(0)
+
+
+def _send_last(messages: "Connection[str | LastMessage, None]", last: LastMessage) -> None:
+    try:
+        send(messages, last)
+    except TooLongError as error:
+        reason = f"its record is too large ({error}): shorten the path, or report less."
+        record = RunRecord(last.record.cell, PlanStatus.ERROR, reason)
+        send(messages, replace(last, record=record))
 
 
 def _record(cell: Cell, recorder: Recorder, before_plan: Callable[[], None]) -> RunRecord:

@@ -7,7 +7,9 @@ that poll one child race for its exit code; so starting and reaping take turns.
 import contextlib
 import multiprocessing
 import os
+import tempfile
 import threading
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from multiprocessing import forkserver
@@ -15,17 +17,30 @@ from multiprocessing.connection import wait
 from multiprocessing.context import ForkServerProcess
 from typing import Any
 
+import psutil
+
 from suite.errors import HarnessError
 from suite.harness.child import run_in_child
 from suite.harness.fork_server import Warmth
 from suite.processes.family import REAP_S, kill_children, kill_family, kill_group
-from suite.processes.multiprocessing_private import forget_server, main_module, server_pid
+from suite.processes.multiprocessing_private import (
+    forget_server,
+    main_module,
+    make_socket_folder,
+    server_pid,
+    start_tracker_quietly,
+)
 
 ANSWER_S = 0.5
 """A fork server that takes longer to start a process is still warming up."""
 
+WAKE_S = 1.0
+"""How often it is looked whether the fork server was stopped."""
+
 STARTS = 3
 """A planner that kills its parent takes the fork server away from the others: they try again."""
+
+POLL_S = 0.02
 
 _CONTEXT = multiprocessing.get_context("forkserver")
 
@@ -34,12 +49,14 @@ _CONTEXT = multiprocessing.get_context("forkserver")
 class _Fleet:
     """The runs of this process that are in flight, and how often they were told to stop.
 
+    sentry : looks after the fork server; None before the first one.
     turn : held while one is started or reaped; then the children of the fork server are the runs in
         flight, and orphans of others.
     """
 
     pids: set[int] = field(default_factory=set)
     stops: int = 0
+    sentry: threading.Thread | None = None
     turn: threading.Lock = field(default_factory=threading.Lock)
 
 
@@ -51,9 +68,21 @@ class StoppedError(Exception):
 
 
 def start_server(warmth: Warmth) -> None:
-    """Start the fork server, if it does not run yet; it warms itself while the caller goes on."""
+    """Start the fork server, if it does not run yet; it warms itself while the caller goes on.
+
+    Raises
+    ------
+    HarnessError
+        If the system starts no process.
+    """
     with _fleet.turn, _server_environment(warmth):
-        forkserver.ensure_running()
+        try:
+            start_tracker_quietly()
+            make_socket_folder()
+            forkserver.ensure_running()
+        except OSError as error:
+            raise _no_process(error) from error
+    _post_sentry()
 
 
 def stop_server() -> None:
@@ -92,22 +121,67 @@ def start(arguments: tuple[Any, ...], warmth: Warmth) -> ForkServerProcess:
     HarnessError
         If the system starts no process.
     """
+    _post_sentry()
     stops = _fleet.stops
+    failure: Exception = OSError()
     for _ in range(STARTS):
         with _fleet.turn, _server_environment(warmth):
             if _fleet.stops != stops:
                 break
             process = _CONTEXT.Process(target=run_in_child, args=arguments)
-            with contextlib.suppress(EOFError, OSError):
+            try:
+                make_socket_folder()
                 process.start()
                 _fleet.pids.add(process.ident or 0)
                 return process
+            except (EOFError, OSError) as error:
+                failure, server = error, server_pid()
+        _give_up_on(server, stops)
     if _fleet.stops != stops:
         raise StoppedError
-    raise HarnessError(
-        "no process can be started for a run. Look at the limits for processes, open files and "
-        "memory, then run the same command again: it goes on where it stopped."
+    raise _no_process(failure) from failure
+
+
+def _no_process(error: Exception) -> HarnessError:
+    why = getattr(error, "strerror", None) or "the fork server does not answer"
+    file = getattr(error, "filename", None)
+    return HarnessError(
+        f"no process can be started for a run ({why}{f': {file}' if file else ''}). Look at the "
+        "limits for processes, open files and memory and at the folder for temporary files, "
+        f"{tempfile.gettempdir()}; then run the same command again: it goes on where it stopped."
     )
+
+
+def _give_up_on(server: int | None, stops: int) -> None:
+    """End a fork server that starts no process, its socket deleted perhaps: another one is made.
+
+    Not before the other runs have ended that it has started, for it takes them with it.
+    """
+    while server is not None:
+        with _fleet.turn:
+            if _fleet.stops != stops or server_pid() != server:
+                return
+            if not _fleet.pids:
+                kill_family(server)
+                forget_server()
+                return
+        time.sleep(POLL_S)
+
+
+def _post_sentry() -> None:
+    """Have a thread wake the fork server when it is stopped: nobody can who waits for it."""
+    if _fleet.sentry is None or not _fleet.sentry.is_alive():
+        _fleet.sentry = threading.Thread(target=_keep_awake, name="sentry", daemon=True)
+        _fleet.sentry.start()
+
+
+def _keep_awake() -> None:
+    while True:
+        time.sleep(WAKE_S)
+        with contextlib.suppress(psutil.Error):
+            server = server_pid()
+            if server is not None and psutil.Process(server).status() == psutil.STATUS_STOPPED:
+                psutil.Process(server).resume()
 
 
 def reap(process: ForkServerProcess, timeout_s: float = REAP_S) -> int | None:

@@ -8,7 +8,6 @@ A plugin may crash, hang or exit while it warms up. So each is tried in a fork f
 limit; one that fails there stays cold, and its own runs meet, and report, the same failure.
 """
 
-import atexit
 import contextlib
 import gc
 import json
@@ -21,12 +20,15 @@ from typing import Any
 
 import psutil
 
-from suite.harness.prepared import build_planner, exact_optimum, prepared_scene, referee
+from suite.harness.prepared import build_planner, make_ready
 from suite.harness.provenance import ONE_THREAD
 from suite.processes.family import adopt_orphans, kill_family, kill_group
 from suite.processes.memory import MemoryWatch
-from suite.processes.multiprocessing_private import ignore_orphan_warning, stand_in_for_main
-from suite.processes.output import end_quietly
+from suite.processes.multiprocessing_private import (
+    end_without_farewell,
+    ignore_orphan_warning,
+    stand_in_for_main,
+)
 
 VARIABLE = "KBGA_BENCH_WARM"
 
@@ -65,13 +67,13 @@ def warm(wanted: Mapping[str, Any]) -> None:
     for source, query in wanted["queries"]:
         # A scene that can't be loaded is reported by the runs that want it.
         with contextlib.suppress(Exception):
-            prepared_scene(source)
-            exact_optimum(source, query)
-            referee(source)
+            make_ready(source, query)
     with _silence():
         for name, settings in wanted["planners"]:
             _warm_planner(name, json.loads(settings), wanted["limit_s"], wanted["memory_bytes"])
             _end_children()
+    # After the plugins, because what was asked for last comes first.
+    end_without_farewell(_end_children)
     # Children then leave these objects, and the pages they lie on, alone.
     gc.collect()
     gc.freeze()
@@ -88,8 +90,6 @@ def _become_server() -> None:
         signal.signal(number, signal.SIG_IGN)
     adopt_orphans()
     ignore_orphan_warning()
-    end_quietly()
-    atexit.register(_end_children)
 
 
 def _end_children() -> None:

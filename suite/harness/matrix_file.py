@@ -60,9 +60,12 @@ class _Table(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 _Name = Annotated[str, Meta(min_length=1)]
-_Seed = Annotated[int, Meta(ge=0, description="whole numbers of 0 or more")]
+MOST_SEEDS = 10**6
+"""How many a matrix may count: the cells of more would not fit into memory."""
+
+_Seed = Annotated[int, Meta(ge=0, le=2**63 - 1, description="whole numbers of 0 or more")]
 _Seeds = Annotated[
-    Annotated[int, Meta(ge=1)] | Annotated[list[_Seed], Meta(min_length=1)],
+    Annotated[int, Meta(ge=1, le=MOST_SEEDS)] | Annotated[list[_Seed], Meta(min_length=1)],
     Meta(description="a number of seeds, 1 or more, or a list of them"),
 ]
 _SceneName = Annotated[_Name, Meta(description="the name or the file of a scene")]
@@ -194,13 +197,15 @@ def read_matrix_file(path: Path) -> tuple[Source, MatrixFile]:
 
 def _read_toml(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise MatrixError(f"{path}: can't be read ({error.strerror}).") from error
     except UnicodeDecodeError as error:
         raise MatrixError(f"{path.name}: is not UTF-8 text (byte {error.start}).") from error
     except tomllib.TOMLDecodeError as error:
         raise MatrixError(f"{path.name}: not TOML: {error}.") from error
+    except (ValueError, RecursionError) as error:  # numbers too long, or nested too deep
+        raise MatrixError(f"{path.name}: can't be read as TOML ({error}).") from error
 
 
 def outline(name: str) -> dict[str, Any]:

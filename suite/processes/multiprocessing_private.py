@@ -5,19 +5,29 @@ behaviour are the same in all of them. ``tests/suite/processes/test_multiprocess
 fails where a release takes one away.
 """
 
+import contextlib
 import multiprocessing
 import os
 import struct
 import sys
+import tempfile
+import threading
 import types
 import warnings
+from collections.abc import Callable
 from importlib.machinery import ModuleSpec
-from multiprocessing import forkserver
+from multiprocessing import forkserver, resource_tracker
+from multiprocessing.util import get_temp_dir
 from typing import Any
 
 MESSAGE_HEADER = struct.Struct("!i")
 """What ``Connection.send`` puts before a message of less than 2 GiB: its length. Whoever reads only
 what is there, and does not wait for the rest, must know it."""
+
+LONGEST_FOLDER = 70
+"""A socket's path has at most 107 bytes on Linux and 103 on macOS, and Python adds up to 30."""
+
+SHORT_FOLDER = "/tmp"
 
 ORPHAN_WARNING = "forkserver: waitpid returned unexpected pid"
 """How a fork server begins to complain of each orphan that it reaps."""
@@ -41,7 +51,70 @@ def forget_server() -> None:
 
     Python's own tests do it so. The server ends by itself when no run is left that it has started.
     """
-    _server._stop()
+    # Its socket is gone if somebody deleted the folder for temporary files.
+    with contextlib.suppress(FileNotFoundError):
+        _server._stop()
+
+
+def make_socket_folder() -> None:
+    """See to it that a fork server's socket has a folder, whose path is not too long for one.
+
+    Python makes one in the folder for temporary files, once, and never looks again.
+
+    Raises
+    ------
+    OSError
+        If none can be made.
+    """
+    configuration: dict[str, Any] = multiprocessing.current_process()._config  # type: ignore[attr-defined]
+    known = configuration.get("tempdir")
+    if known is not None and not os.path.isdir(known):  # noqa: PTH112
+        try:
+            # Under the same name, because it is to be deleted at the end.
+            os.makedirs(known, mode=0o700)  # noqa: PTH103
+        except OSError:
+            tempfile.tempdir = known = configuration["tempdir"] = None
+    if known is None and len(tempfile.gettempdir()) > LONGEST_FOLDER:
+        before, tempfile.tempdir = tempfile.tempdir, SHORT_FOLDER
+        try:
+            get_temp_dir()
+        finally:
+            tempfile.tempdir = before
+
+
+def start_tracker_quietly() -> None:
+    """Start the process that remembers shared memory, if it does not run yet, with nothing to say.
+
+    All runs have its pipe; what a planner writes into that, or forgets to free, it would tell the
+    terminal at length.
+    """
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        kept = os.dup(2)
+    except OSError:  # closed
+        kept = None
+    if kept is not None:
+        os.dup2(nowhere, 2)
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        if kept is not None:
+            os.dup2(kept, 2)
+            os.close(kept)
+        os.close(nowhere)
+
+
+def end_without_farewell(last: Callable[[], None]) -> None:
+    """Have this process end with this function when its program has ended, and with nothing else.
+
+    No thread is waited for then, and nothing of ``atexit`` is called: those of plugins may hang.
+    """
+
+    def end() -> None:
+        last()
+        os._exit(0)
+
+    threading._register_atexit(end)  # type: ignore[attr-defined]
 
 
 def leave_server() -> None:

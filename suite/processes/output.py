@@ -8,6 +8,7 @@ import contextlib
 import os
 import sys
 from collections.abc import Iterator
+from typing import Any
 
 
 def end_quietly() -> None:
@@ -38,6 +39,14 @@ def print_aside() -> Iterator[None]:
         mine.flush()  # what was printed by whoever had taken hold of it before
         os.dup2(kept, 1)
         os.close(kept)
+
+
+def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    """Write a warning as one line, without the line of ours that gave it.
+
+    For ``warnings.showwarning``.
+    """
+    sys.stderr.write(f"kbga-bench: warning: {' '.join(str(message).split())}\n")
 
 
 def _drop_standard_error() -> None:

@@ -25,6 +25,24 @@ class GarbledError(Exception):
     """What came through a pipe is not what the harness's own end sends."""
 
 
+class TooLongError(Exception):
+    """A message is longer than the other end takes it."""
+
+
+def send(pipe: "Connection[Any, Any]", message: Any) -> None:
+    """Send a message as ``Connection.send`` does, for an :class:`Inbox`.
+
+    Raises
+    ------
+    TooLongError
+        If it is too long, and nothing was sent.
+    """
+    packed = pickle.dumps(message)
+    if len(packed) > MESSAGE_BYTES:
+        raise TooLongError(f"{len(packed) / 1e6:.0f} MB, above {MESSAGE_BYTES / 1e6:.0f} MB")
+    pipe.send_bytes(packed)
+
+
 class Inbox:
     """Takes the messages that the other end sends with ``Connection.send``."""
 

@@ -1,5 +1,6 @@
 """Opening a store's file, and what SQLite's errors mean to a user."""
 
+import os
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,18 +15,52 @@ BUSY_S = 10.0
 
 def connect(path: Path, *, writable: bool) -> sqlite3.Connection:
     """Connect to the file of a store, made if it is missing and may be written."""
+    # As a URI too, so that other stores can be attached for reading only.
+    return _connected(path, path.absolute().as_uri() if writable else uri_for_reading(path))
+
+
+def _connected(path: Path, uri: str) -> sqlite3.Connection:
     with explained(path):
-        if writable:
-            # As a URI too, so that other stores can be attached for reading only.
-            return sqlite3.connect(f"{path.absolute().as_uri()}", uri=True, timeout=BUSY_S)
-        return sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=BUSY_S)
+        return sqlite3.connect(uri, uri=True, timeout=BUSY_S)
+
+
+def uri_for_reading(path: Path) -> str:
+    """How SQLite is told to open a store beside whoever writes to it.
+
+    It wants to write its journal even then. In a folder that can't be written, as on a disk that is
+    mounted read-only, it is told that there is no writer, unless there is a journal that says so.
+    """
+    if not os.access(path.parent, os.W_OK) and not _has_journal(path):
+        return _uri_without_writer(path)
+    return f"{path.absolute().as_uri()}?mode=ro"
+
+
+def _uri_without_writer(path: Path) -> str:
+    return f"{path.absolute().as_uri()}?mode=ro&immutable=1"
+
+
+def _has_journal(path: Path) -> bool:
+    """Whether there are rows that are not in the file itself yet."""
+    journal = Path(f"{path}-wal")
+    return journal.exists() and journal.stat().st_size > 0
 
 
 def open_for_reading(path: Path) -> sqlite3.Connection:
     """Open a store beside whoever writes to it; StoreError if it is missing, or is no store."""
     if not path.exists():
         raise missing(path)
-    connection = connect(path, writable=False)
+    try:
+        return _checked(path, uri_for_reading(path))
+    except StoreError as error:
+        # The disk is too full for the journal that a reader wants, where there is no writer's.
+        kind = getattr(error.__cause__, "sqlite_errorname", "")
+        if _has_journal(path) or not kind.startswith(("SQLITE_IOERR", "SQLITE_FULL")):
+            raise
+        return _checked(path, _uri_without_writer(path))
+
+
+def _checked(path: Path, uri: str) -> sqlite3.Connection:
+    connection = _connected(path, uri)
     try:
         check_is_store(path, connection)
     except BaseException:

@@ -13,6 +13,9 @@ from suite.planner import Budget, Improvement, PlanStatus, Snapshot
 from suite.scenes.scene import DEFAULT_QUERY
 from suite.typed import plain
 
+MOST_LETTERS = 10_000
+"""Of the reason of a row: a traceback has a tenth of them."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class World:
@@ -195,6 +198,16 @@ class RunRecord:
     stderr: str = ""
     simulation: Mapping[str, Any] | None = None
     snapshots: tuple[Snapshot, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.reason is not None and len(self.reason) > MOST_LETTERS:
+            object.__setattr__(self, "reason", _shortened(self.reason))
+
+
+def _shortened(text: str) -> str:
+    """The two ends of a text, of which an exception may have megabytes."""
+    half = MOST_LETTERS // 2
+    return f"{text[:half]} [...] {text[-half:]}"
 
 
 def canonical_json(value: Any) -> str:

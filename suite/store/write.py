@@ -7,6 +7,8 @@ and nothing else. pandas reads it; see :mod:`suite.store.read`.
 import json
 import math
 import sqlite3
+import tempfile
+import warnings
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -18,12 +20,21 @@ from typing import Any, Self
 import numpy as np
 from filelock import BaseFileLock, FileLock, Timeout
 
-from suite.errors import StoreError
+from suite.errors import StoreError, writing
 from suite.planner import Snapshot
-from suite.store.connection import check_is_store, connect, explained, missing
+from suite.store.connection import (
+    check_is_store,
+    connect,
+    explained,
+    missing,
+    uri_for_reading,
+)
 from suite.store.read import read_sessions
 from suite.store.record import Cell, RunRecord, canonical_json, short_hash
 from suite.store.schema import BELONGINGS, add_columns, columns_now, create_tables
+
+RESTORES = 100
+"""How often it is tried to write a store anew that is deleted again and again."""
 
 
 class Store:
@@ -37,6 +48,7 @@ class Store:
         self._connection = connection
         self._lock = lock
         self._session: int | None = None
+        self._files = _identities(path)
 
     def __enter__(self) -> Self:
         return self
@@ -50,9 +62,18 @@ class Store:
         self.close()
 
     def close(self) -> None:
-        """Close the file and let others write. Everything that was added is in it already."""
-        self._connection.close()
-        self._lock.release()
+        """Close the file and let others write. Everything that was added is in it already.
+
+        Raises
+        ------
+        StoreError
+            If the file was deleted and can't be written anew.
+        """
+        try:
+            self._restore_if_gone()
+        finally:
+            self._connection.close()
+            self._lock.release()
 
     def begin_session(self, provenance: Mapping[str, Any]) -> None:
         """Say what machine and which versions the rows that follow come from."""
@@ -145,9 +166,9 @@ class Store:
     @contextmanager
     def attached(self, other: Path) -> Iterator[sqlite3.Connection]:
         """One transaction on this store (``main``) beside another one (``other``, read only)."""
+        self._restore_if_gone()
         with explained(other):
-            uri = f"{other.absolute().as_uri()}?mode=ro"
-            self._connection.execute("ATTACH ? AS other", (uri,))
+            self._connection.execute("ATTACH ? AS other", (uri_for_reading(other),))
         try:
             with self._writing() as connection:
                 yield connection
@@ -156,8 +177,62 @@ class Store:
 
     @contextmanager
     def _writing(self) -> Iterator[sqlite3.Connection]:
+        self._restore_if_gone()
         with explained(self.path), self._connection:
             yield self._connection
+
+    def _restore_if_gone(self) -> None:
+        """Write the file anew, with all its rows, if somebody has deleted it.
+
+        SQLite would go on in the deleted file without a word, and all rows would be lost at the
+        end. Until then everything is still there, for this connection alone.
+        """
+        there = _identities(self.path)
+        if there == self._files:
+            return
+        with explained(self.path):
+            rows = self._connection.serialize()
+        if there[0] not in (None, self._files[0]):
+            kept = _kept(rows, Path(f"{self.path}.rescued"))
+            raise StoreError(
+                f"{self.path}: was replaced by another file while it was written to. Its rows are "
+                f"kept in {kept}: put that in its place, and run the same command again."
+            )
+        # Closed before the new file is there: SQLite deletes the journals of its name with it.
+        self._connection.close()
+        self._write_anew(rows)
+        (count,) = self._connection.execute("SELECT count(*) FROM runs").fetchone()
+        warnings.warn(
+            f"{self.path}: was deleted while it was written to, or its journal was. It is written "
+            f"anew, with all its {count} rows. Find out who deletes it: a planner?",
+            stacklevel=2,
+        )
+
+    def _write_anew(self, rows: bytes) -> None:
+        """Put a file of these bytes in its place; whoever deletes it may do so in the middle."""
+        for _ in range(RESTORES):
+            try:
+                _make_folder(self.path)
+                if not _lock_file(self.path).exists():
+                    self._lock.release()
+                    self._lock = _locked(self.path)
+                kept = _kept(rows, Path(f"{self.path}.rescued"))
+                wanted = _identity(kept)
+                kept.replace(self.path)
+                connection = _open_for_writing(self.path)
+            except (StoreError, OSError):
+                continue
+            files = _identities(self.path)
+            # Deleted a moment ago, it would have been made anew as an empty one.
+            if files[0] == wanted and None not in files:
+                self._connection, self._files = connection, files
+                return
+            connection.close()
+        kept = _kept(rows, Path(tempfile.mkdtemp(prefix="kbga-bench-"), self.path.name))
+        raise StoreError(
+            f"{self.path}: was deleted while it was written to, and can't be written anew. Its "
+            f"rows are kept in {kept}: put that in its place, and run the same command again."
+        )
 
 
 def open_store(path: Path, *, create: bool = True) -> Store:
@@ -221,7 +296,7 @@ def _locked(path: Path) -> BaseFileLock:
 
     The lock is on a file beside the store: SQLite's own locks last for a transaction only.
     """
-    file = Path(f"{path}.lock")
+    file = _lock_file(path)
     lock = FileLock(file, timeout=0)
     try:
         # The library waits for a folder that can't be written as for a lock that is held.
@@ -235,6 +310,10 @@ def _locked(path: Path) -> BaseFileLock:
             "permissions."
         ) from error
     return lock
+
+
+def _lock_file(path: Path) -> Path:
+    return Path(f"{path}.lock")
 
 
 def _holder(path: Path) -> str:
@@ -251,13 +330,36 @@ def _holder(path: Path) -> str:
 def is_being_written(path: Path) -> bool:
     """Whether a process has a store open for writing."""
     try:
-        with FileLock(f"{path}.lock", timeout=0):
+        with FileLock(_lock_file(path), timeout=0):
             return False
     except Timeout:
         return True
     except OSError:
         # No right to write there: nobody to ask, and nothing that the caller could disturb.
         return False
+
+
+def _kept(rows: bytes, file: Path) -> Path:
+    """A store's bytes, written to a file."""
+    with writing(file, StoreError):
+        file.write_bytes(rows)
+    return file
+
+
+def _identities(path: Path) -> tuple[tuple[int, int] | None, ...]:
+    """Which files a store's file and its journal are: other ones, or none, if they were deleted.
+
+    SQLite makes the journal with the first change, and keeps it as long as the store is open.
+    """
+    return tuple(_identity(Path(f"{path}{suffix}")) for suffix in ("", "-wal"))
+
+
+def _identity(file: Path) -> tuple[int, int] | None:
+    try:
+        found = file.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino
 
 
 def _make_folder(path: Path) -> None:

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from dataclasses import dataclass
 
+import psutil
+
 COMMAND = [sys.executable, "-c", "from suite.cli import main; main()"]
 
 
@@ -17,7 +19,7 @@ class Done:
 
 def in_own_process(*arguments, code=0, env=None):
     done = subprocess.run(
-        [*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=120, env=env
+        [*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=600, env=env
     )
     assert done.returncode == code, done.stderr
     return Done(done.returncode, done.stdout, done.stderr)
@@ -29,3 +31,17 @@ def hear_interrupts():
     What a shell runs in the background ignores it, children included: nobody would be tested.
     """
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def marked(mark):
+    """Processes that descend from a command with KBGA_TEST_MARK, wherever they hang now."""
+    found = []
+    for process in psutil.process_iter():
+        try:
+            # A daemon of a daemon has the same block of variables as its first ancestor.
+            ours = process.environ().get("KBGA_TEST_MARK") == mark
+            if ours and process.status() != psutil.STATUS_ZOMBIE:
+                found.append(process)
+        except psutil.Error:
+            continue
+    return found

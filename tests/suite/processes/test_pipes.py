@@ -5,7 +5,16 @@ from multiprocessing import Pipe
 
 import pytest
 
-from suite.processes.pipes import STDERR_BYTES, STDERR_LINES, GarbledError, Inbox, Tail
+from suite.processes import pipes
+from suite.processes.pipes import (
+    STDERR_BYTES,
+    STDERR_LINES,
+    GarbledError,
+    Inbox,
+    Tail,
+    TooLongError,
+    send,
+)
 
 
 @pytest.fixture
@@ -45,6 +54,14 @@ def test_what_the_harness_did_not_write_is_noticed(pipe, noise):
     os.write(pipe[1].fileno(), noise)
     with pytest.raises(GarbledError):
         Inbox(pipe[0]).read()
+
+
+def test_a_message_that_is_too_long_is_not_sent(pipe, monkeypatch):
+    monkeypatch.setattr(pipes, "MESSAGE_BYTES", 1_000_000)
+    with pytest.raises(TooLongError, match="2 MB, above 1 MB"):
+        send(pipe[1], b"x" * 2_000_000)
+    send(pipe[1], "short")
+    assert Inbox(pipe[0]).read() == ["short"]
 
 
 def test_of_standard_error_the_last_lines_are_kept(pipe):

@@ -1,10 +1,14 @@
+import itertools
 import os
+import shutil
 import sqlite3
 import subprocess
 import sys
-from contextlib import closing
+import warnings
+from contextlib import closing, contextmanager
 from dataclasses import fields
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pandas as pd
@@ -28,6 +32,9 @@ from suite.store.record import Cell, RunRecord, World, short_hash
 from suite.store.schema import columns_now
 from suite.store.write import open_store
 from tests.suite.harness.records import make_cell, make_record
+
+NOBODY = 65534
+"""A user that owns nothing."""
 
 
 @pytest.fixture
@@ -248,7 +255,7 @@ from suite.store.write import open_store
 with open_store(Path(sys.argv[1])) as store:
     store.begin_session({"matrix": "walls", "pid": 4711, "host": "here", "started_at": "noon"})
     print("open", flush=True)
-    time.sleep(60)
+    time.sleep(3600)
 """
 
 
@@ -298,16 +305,140 @@ def test_a_disk_that_can_take_no_more_is_an_error_and_nothing_is_corrupted(file)
     assert len(read_runs(file)) == int(number) > 10
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
-def test_a_folder_that_cannot_be_written_is_an_error_that_says_so(file):
+READER = """
+import resource, sys
+from pathlib import Path
+from suite.store.read import read_runs
+resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+print(len(read_runs(Path(sys.argv[1]))))
+"""
+
+
+def test_where_nothing_more_can_be_written_a_store_can_be_read(file):
     filled(file, make_record())
-    file.parent.chmod(0o500)
+    told = subprocess.run([sys.executable, "-c", READER, str(file)], capture_output=True, text=True)
+    assert (told.stdout, told.stderr) == ("1\n", "")
+
+
+@contextmanager
+def nobody():
+    """Within, root, who may write everywhere, is a user who may not."""
+    is_root = os.getuid() == 0
+    if is_root:
+        os.setresuid(NOBODY, NOBODY, 0)
     try:
-        with pytest.raises(StoreError, match="can't be opened or written"):
-            open_store(file)
-        assert len(read_runs(file)) == 1
+        yield
     finally:
-        file.parent.chmod(0o700)
+        if is_root:
+            os.setresuid(0, 0, 0)
+
+
+def test_a_folder_that_cannot_be_written_is_an_error_that_says_so_and_can_be_read():
+    with TemporaryDirectory() as name:
+        file = Path(name, "folder", "store.db")
+        filled(file, make_record())
+        Path(name).chmod(0o755)
+        file.parent.chmod(0o555)
+        try:
+            with nobody():
+                with pytest.raises(StoreError, match="can't be opened or written"):
+                    open_store(file)
+                assert len(read_runs(file)) == 1
+        finally:
+            file.parent.chmod(0o755)
+
+
+def fill_and_delete(file, delete):
+    """A store of three rows whose files are deleted behind each."""
+    with open_store(file) as store:
+        store.begin_session({})
+        for seed in range(3):
+            store.add(make_record(make_cell(seed=seed)))
+            delete()
+
+
+@pytest.mark.parametrize("pattern", ["store.db*", "store.db", "store.db-*"])
+def test_a_store_that_is_deleted_while_it_is_open_is_written_anew_with_all_rows(file, pattern):
+    with pytest.warns(UserWarning, match="was deleted while it was written to") as told:
+        fill_and_delete(file, lambda: [one.unlink() for one in file.parent.glob(pattern)])
+    assert [f"all its {n} rows" in str(w.message) for n, w in zip((1, 2, 3), told, strict=True)]
+    check_is_whole(file, rows=3)
+    assert len(read_paths(file)) == 3
+    # And can be written by the next one.
+    filled(file, make_record(make_cell(seed=9)))
+    assert {one.name for one in file.parent.iterdir()} <= {
+        "store.db", "store.db-wal", "store.db-shm", "store.db.lock",
+    }  # fmt: skip
+
+
+def test_a_store_is_written_anew_with_the_folder_that_it_was_in(file):
+    with pytest.warns(UserWarning, match="was deleted while it was written to"):
+        fill_and_delete(file, lambda: shutil.rmtree(file.parent))
+    check_is_whole(file, rows=3)
+
+
+def test_a_store_survives_who_deletes_it_without_end(file):
+    with warnings.catch_warnings(record=True) as told, open_store(file) as store:
+        warnings.simplefilter("always")
+        store.begin_session({})
+        with deleter(file):
+            for seed in itertools.count():
+                store.add(make_record(make_cell(seed=seed)))
+                if len(told) >= 3:
+                    break
+    check_is_whole(file, rows=seed + 1)
+
+
+@contextmanager
+def deleter(file):
+    """Within, a process deletes the store and all beside it, again and again."""
+    process = subprocess.Popen([sys.executable, "-c", DELETER, f"{file}*"], stdout=subprocess.PIPE)
+    try:
+        process.stdout.readline()
+        yield
+    finally:
+        process.kill()
+        process.communicate()
+
+
+DELETER = """
+import sys, time
+from pathlib import Path
+pattern = Path(sys.argv[1])
+print("ready", flush=True)
+while True:
+    for file in pattern.parent.glob(pattern.name):
+        file.unlink(missing_ok=True)
+    time.sleep(0.05)
+"""
+
+
+def test_a_file_that_was_put_in_the_place_of_a_store_stays_and_the_rows_are_kept_beside(file):
+    store = open_store(file)
+    store.begin_session({})
+    store.add(make_record())
+    file.unlink()
+    file.write_text("mine")
+    with pytest.raises(StoreError, match="was replaced by another file"):
+        store.add(make_record(make_cell(seed=1)))
+    with pytest.raises(StoreError, match=r"store\.db\.rescued: put that in its place"):
+        store.close()
+    assert file.read_text() == "mine"
+    check_is_whole(Path(f"{file}.rescued"), rows=1)
+
+
+def check_is_whole(file, rows):
+    with closing(sqlite3.connect(file)) as connection:
+        assert connection.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+    assert len(read_runs(file)) == rows
+
+
+def test_a_reason_of_megabytes_is_shortened_to_its_ends(file):
+    filled(file, make_record(reason="first " + "x" * 10**7 + " last"))
+    (reason,) = read_runs(file)["reason"]
+    assert len(reason) < 11_000
+    assert reason.startswith("first x")
+    assert reason.endswith("x last")
 
 
 @pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="there is no /proc")
