@@ -239,6 +239,9 @@ class Planner(ABC, Generic[SettingsT]):
     """A frozen dataclass whose fields all have defaults."""
     abilities: ClassVar[Abilities] = Abilities()
     """What it can do."""
+    version_files: ClassVar[tuple[str, ...]] = ()
+    """Files that belong to its version as its code does, such as weights: names beside the module,
+    or of whole folders, written out as a tuple of strings. Rows of others are not rows of it."""
     interface: ClassVar[int] = INTERFACE
     """The version of this file that it is written for. Say it in a plugin that is installed by
     others: one for another version is then refused, with that reason."""

@@ -21,6 +21,7 @@ from suite.planner import Planner
 from suite.plugins.code_hash import code_hash, files_beside, files_of_package
 from suite.plugins.own_modules import VARIABLE, import_file, in_words
 from suite.plugins.validation import flaw
+from suite.plugins.version_files import refuse_unread, version_files
 
 HOW = "Give path/to/file.py, path/to/file.py:Class, or module:Class."
 
@@ -57,7 +58,10 @@ class NamedPlugin:
             If the code is not what it was when the plugin was named.
         """
         place, _, kind = self.reference.rpartition(":")
-        return getattr(_imported(place, self.folder, self.code), kind)
+        code = _code(place, self.folder)
+        if (code_hash(code), _version(code)) != (self.code, self.version):
+            raise PluginError(f"{place} changed since the command began. Give it again.")
+        return getattr(_imported(place, self.code), kind)
 
 
 def name_plugins(references: Iterable[str]) -> list[NamedPlugin]:
@@ -95,16 +99,20 @@ def _resolved(reference: str) -> list[NamedPlugin]:
     place, kind = _parsed(reference)
     folder = str(Path.cwd())
     try:
-        code = _code_hash(place, folder)
-        module = _imported(place, folder, code)
+        code = _code(place, folder)
+        hashed, version = code_hash(code), _version(code)
+        module = _imported(place, hashed)
+    except PluginError as error:
+        raise PluginError(f"--plugin {reference}: {error}") from error
     except (Exception, SystemExit) as error:  # other people's code: its import may raise anything
         raise PluginError(f"--plugin {reference}: {in_words(error)}") from error
     classes = _planners_of(module) if kind is None else [kind]
     if not classes:
         raise PluginError(f"--plugin {reference}: no subclass of suite.planner.Planner in it.")
+    names = [_checked_name(reference, module, each, code) for each in classes]
     return [
-        NamedPlugin(_checked_name(reference, module, each), f"{place}:{each}", folder, code, code)
-        for each in classes
+        NamedPlugin(name, f"{place}:{each}", folder, hashed, version)
+        for name, each in zip(names, classes, strict=True)
     ]
 
 
@@ -124,29 +132,31 @@ def _parsed(reference: str) -> tuple[str, str | None]:
     return str(path), kind
 
 
-def _imported(place: str, folder: str, code: str) -> ModuleType:
-    """Import a module or a file whose code has that hash; each once."""
-    if _code_hash(place, folder) != code:
-        raise PluginError(f"{place} changed since the command began. Give it again.")
+def _imported(place: str, hashed: str) -> ModuleType:
+    """Import a module, or a file whose code has that hash; each once."""
     if place.endswith(".py"):
-        return import_file(Path(place), code)
+        return import_file(Path(place), hashed)
     module = importlib.import_module(place)
     if module.__file__ is None:
         raise PluginError(f"{place} is a folder without code. {HOW}")
     return module
 
 
-def _code_hash(place: str, folder: str) -> str:
-    """Hash of a file with what it imports from beside it, of a module so, or of its package."""
+def _version(code: Iterable[Path]) -> str:
+    """Hash of code and of the data files that it names."""
+    return code_hash({*code, *version_files(code)})
+
+
+def _code(place: str, folder: str) -> set[Path]:
+    """The code of a file with what it imports from beside it, of a module so, or of its package."""
     if place.endswith(".py"):
-        return code_hash(files_beside(Path(place)))
+        return files_beside(Path(place))
     if folder not in sys.path:
         sys.path.append(folder)
-    return code_hash(_files_of_module(place))
+    return _files_of_module(place)
 
 
 def _files_of_module(module: str) -> set[Path]:
-    """The code of the package that a module is in, or of one in none with what lies beside it."""
     files = files_of_package(module)
     is_package = "." in module or any(file.name == "__init__.py" for file in files)
     if is_package:
@@ -166,13 +176,14 @@ def _planners_of(module: ModuleType) -> list[str]:
     ]
 
 
-def _checked_name(reference: str, module: ModuleType, kind: str) -> str:
+def _checked_name(reference: str, module: ModuleType, kind: str, code: Iterable[Path]) -> str:
     found = getattr(module, kind, None)
     if found is None:
         raise PluginError(f"--plugin {reference}: there is no class {kind} in {module.__file__}.")
     wrong = flaw(found)
     if wrong is not None:
         raise PluginError(f"--plugin {reference}: {kind} {wrong}")
+    refuse_unread(found, code)
     name = getattr(found, "name", None)
     if not isinstance(name, str):
         raise PluginError(f"--plugin {reference}: {kind} has no `name`. Give it one, a string.")
