@@ -49,7 +49,7 @@ from typing import Annotated, Any
 from msgspec import Meta, Struct
 
 from suite import seeds
-from suite.errors import MatrixError
+from suite.errors import MatrixError, sentence
 from suite.scenes.modifiers import expand_twins
 from suite.typed import MisfitError, typed
 
@@ -204,7 +204,7 @@ def _read_toml(path: Path) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         raise MatrixError(f"{path.name}: is not UTF-8 text (byte {error.start}).") from error
     except tomllib.TOMLDecodeError as error:
-        raise MatrixError(f"{path.name}: not TOML: {error}.") from error
+        raise MatrixError(f"{path.name}: not TOML: {sentence(error)}") from error
 
 
 def outline(name: str) -> dict[str, Any]:

@@ -82,7 +82,10 @@ def test_a_plugin_that_cannot_be_imported_is_listed_with_the_reason(kbga_bench, 
     broken = next(planner for planner in planners if planner["name"] == "broken")
     assert not broken["available"]
     assert "no_such_module" in broken["reason"]
-    assert "wanderer" in kbga_bench("list", "planners").out
+    said = kbga_bench("list", "planners").out
+    assert "wanderer" in said
+    assert "unavailable: ModuleNotFoundError" in " ".join(said.split())
+    assert "unavailable: unavailable" not in said
 
 
 @pytest.mark.parametrize("what", ["scenes", "planners", "matrices"])
