@@ -50,6 +50,17 @@ def import_file(file: Path, version: str) -> ModuleType:
     return importlib.import_module(name)
 
 
+def package_of(module: str) -> str:
+    """What belongs together: the package of a planner's file, or else the first part of a name.
+
+    Examples
+    --------
+    >>> package_of("numpy.linalg"), package_of("suite.plugins.own_modules.lucky_1a.utils")
+    ('numpy', 'suite.plugins.own_modules.lucky_1a')
+    """
+    return _split(module)[0] if module.startswith(f"{__name__}.") else module.partition(".")[0]
+
+
 def in_words(error: BaseException) -> str:
     """What an import raised, with the names of modules as their author writes them."""
     return re.sub(rf"{re.escape(__name__)}\.\w+\.", "", f"{type(error).__name__}: {error}")
