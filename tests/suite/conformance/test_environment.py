@@ -1,4 +1,6 @@
-"""A variable is the planner's fault when its own code sets it, and not when a library's import does."""
+"""A variable is the planner's fault if its own code sets it; not if the import of a library does."""
+
+# ruff: noqa: ARG002
 
 import os
 import sys
