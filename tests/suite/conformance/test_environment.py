@@ -1,4 +1,4 @@
-"""A variable is the planner's fault if its own code sets it; not if the import of a library does."""
+"""A variable is the planner's fault if its code sets it; not if the import of a library does."""
 
 # ruff: noqa: ARG002
 
