@@ -9,12 +9,12 @@ STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
 
-.PHONY: help setup setup-dev browser bench test test-slow torture lint docs perf harness results \
+.PHONY: help setup setup-dev browser kernels bench test test-loaded test-slow torture lint docs perf harness results \
 	search-readings clean
 
 help:
 	@echo "make bench     run the matrix paper-static and print its tables (ARGS=--quick: two seeds)"
-	@echo "make test      run the tests; test-slow, torture: the long ones; lint"
+	@echo "make test      run the tests; test-slow, torture: the long ones; test-loaded; lint"
 	@echo "make setup     make .venv with the command kbga-bench; . .venv/bin/activate"
 	@echo "make docs      write the reference of the Python interface to out/docs"
 	@echo "make results   remake results/: three quarters of an hour; results-NAME: one folder of it"
@@ -47,10 +47,31 @@ bench: setup
 	$(BIN)/kbga-bench run paper-static --store $(STORE) --jobs $(JOBS) $(ARGS)
 	$(BIN)/kbga-bench tables $(STORE)
 
+# Compiled once, by two processes with a part each: two workers of pytest would both compile all.
+kernels: setup-dev
+	@$(BIN)/python -m tests.kernels kbga & \
+		$(BIN)/python -m tests.kernels visibility-graph ompl-rrtstar grid-astar cmaes; wait
+
+# What runs in a test; TESTS=FILE for some.
+TESTS ?=
+ORDINARY := $(BIN)/python -m pytest -q -m "not slow and not torture" -n 2 --dist worksteal
+
 # The kernels' claims hold compiled and interpreted: the second line runs them without the JIT.
-test: setup-dev browser
-	$(BIN)/python -m pytest -q -m "not slow and not torture" -n 2 --dist worksteal
+test: setup-dev browser kernels
+	$(ORDINARY) $(TESTS)
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -q -m "not slow and not torture" -n 2 tests/suite/geometry tests/kbga
+
+# The same beside so many processes that never rest: no test depends on the machine's speed. They
+# end with the shell that started them, however it ends.
+LOAD ?= 8
+BUSY := import itertools, os; shell = os.getppid(); \
+	all(os.getppid() == shell for _ in itertools.repeat(0))
+test-loaded: setup-dev browser kernels
+	@busy=""; trap 'kill $$busy' EXIT; trap 'exit 130' INT TERM; \
+	for _ in $$(seq $(LOAD)); do \
+		$(BIN)/python -c '$(BUSY)' & busy="$$busy $$!"; \
+	done; \
+	$(ORDINARY) $(TESTS)
 
 test-slow: setup-dev
 	$(BIN)/python -m pytest -q -m slow -n 2 --dist worksteal

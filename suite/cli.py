@@ -5,7 +5,7 @@ import warnings
 from collections.abc import Callable
 from contextlib import nullcontext
 from importlib.metadata import version as version_of
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -13,7 +13,7 @@ from suite.commands import planners, reports, runs, scenes
 from suite.commands.output import apart
 from suite.errors import KbgaBenchError
 from suite.processes.farewell import ending
-from suite.processes.output import end_quietly
+from suite.processes.output import end_quietly, show_warning
 
 app = typer.Typer(
     name="kbga-bench",
@@ -68,7 +68,7 @@ def _before_commands(
 
 def main() -> None:
     """Run the command; errors that users can mend are one line and exit code 2."""
-    warnings.showwarning = _show_warning
+    warnings.showwarning = show_warning
     end_quietly()
     # Called by anybody else, as by tests, the process is not ours to end.
     is_own = sys._getframe(1).f_globals.get("__name__") == "__main__"
@@ -86,7 +86,3 @@ def _note(text: str) -> None:
 
 def _one_line(text: object) -> str:
     return " ".join(str(text).split())
-
-
-def _show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    typer.echo(f"kbga-bench: warning: {_one_line(message)}", err=True)

@@ -76,7 +76,7 @@ def dataclass_of(data: Mapping[str, Any], kind: type[T]) -> T:
         try:
             values[key] = typed(value, hints[key])
         except MisfitError as error:
-            what = f"{key} is {value!r}. Give {_given(inspect.type_info(hints[key]))}."
+            what = f"{key} is {shown(value)}. Give {_given(inspect.type_info(hints[key]))}."
             raise MisfitError(error.keys, what) from error
     return kind(**values)
 
@@ -107,6 +107,22 @@ def plain(value: Any) -> Any:
         return {name: plain(item) for name, item in value.items()}
     # numpy is not imported for it: a command that only lists has no arrays.
     return value.tolist() if hasattr(value, "tolist") else value
+
+
+SHOWN = 80
+"""Characters of a value in an error: it says what stands there, and whole it may be the file."""
+
+
+def shown(value: Any) -> str:
+    """A value as an error shows it: on one line, and cut if it is long.
+
+    Examples
+    --------
+    >>> shown("abc"), shown(list(range(1000)))[-8:]
+    ("'abc'", '0, 21...')
+    """
+    text = " ".join(repr(value).split())
+    return text if len(text) <= SHOWN else f"{text[: SHOWN - 3]}..."
 
 
 def in_words(kind: Any) -> str:
@@ -173,7 +189,7 @@ def _told(said: str, keys: tuple[str | int, ...], data: Any, kind: inspect.Type)
     for key in keys:
         data = data[key]
     names = [key for key in keys if isinstance(key, str)]
-    return f"{names[-1] if names else 'it'} is {data!r}. Give {_given(_at(kind, keys))}."
+    return f"{names[-1] if names else 'it'} is {shown(data)}. Give {_given(_at(kind, keys))}."
 
 
 def _unknown(key: str, known: list[str]) -> str:
@@ -184,7 +200,12 @@ def _at(kind: inspect.Type, keys: tuple[str | int, ...]) -> inspect.Type:
     """The type of the place that some keys lead to; with its description, if it has one."""
     for key in keys:
         inner = _one_with(key, _bare(kind))
-        kind = _fields(inner)[key] if isinstance(key, str) else inner.item_type  # type: ignore[attr-defined]
+        if isinstance(key, str):
+            kind = _fields(inner)[key]
+        elif isinstance(inner, inspect.TupleType):
+            kind = inner.item_types[key]
+        else:
+            kind = inner.item_type  # type: ignore[attr-defined]
     return kind
 
 
@@ -198,8 +219,8 @@ def _bare(kind: inspect.Type) -> list[inspect.Type]:
 
 
 def _one_with(key: str | int, kinds: list[inspect.Type]) -> inspect.Type:
-    wanted = "fields" if isinstance(key, str) else "item_type"
-    return next(kind for kind in kinds if hasattr(kind, wanted))
+    wanted = ("fields",) if isinstance(key, str) else ("item_type", "item_types")
+    return next(kind for kind in kinds if any(hasattr(kind, name) for name in wanted))
 
 
 def _fields(kind: inspect.Type) -> dict[str, inspect.Type]:

@@ -3,7 +3,8 @@
 The outlines of workspace and obstacles are noded together on a fine grid, so that everything that
 touches does so in common vertices. Each face of the arrangement is free or solid; solid faces are
 cut into convex parts (constrained Delaunay, then Hertel and Mehlhorn 1983), and what two parts
-share is a seam. Metres, x right, y up.
+share is a seam. All of it in coordinates relative to the workspace; the result, of vertices that
+are float64 in the scene's coordinates too, is moved back without rounding. Metres, x right, y up.
 """
 
 from collections import Counter, defaultdict
@@ -17,9 +18,9 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
-from suite.geometry.kernels import ObstacleArrays
+from suite.geometry.coordinates import Coordinates, coordinates_of
+from suite.geometry.kernels import YMAX, ObstacleArrays
 from suite.geometry.predicates import orientation
-from suite.geometry.tolerances import GRID
 
 Point = tuple[float, float]
 Part = list[Point]
@@ -63,7 +64,16 @@ def arrange(workspace: Polygon, obstacles: Sequence[Polygon]) -> Arrangement:
     -------
     Arrangement
     """
-    faces, is_frame = _solid_faces(workspace, obstacles)
+    coordinates = coordinates_of(workspace.bounds)
+    room, *drawn = (shapely.transform(p, coordinates.local) for p in (workspace, *obstacles))
+    return _moved(_arrange(room, drawn, coordinates), coordinates)
+
+
+def _arrange(
+    workspace: Polygon, obstacles: Sequence[Polygon], coordinates: Coordinates
+) -> Arrangement:
+    """The same, of local coordinates to local coordinates."""
+    faces, is_frame = _solid_faces(workspace, obstacles, coordinates)
     parts, group_of, frame = _grouped_parts(faces, is_frame)
     order = sorted(range(len(parts)), key=lambda i: group_of[i])
     parts = [parts[i] for i in order]
@@ -74,10 +84,42 @@ def arrange(workspace: Polygon, obstacles: Sequence[Polygon]) -> Arrangement:
     return Arrangement(
         solid=_as_multipolygon(shapely.union_all(faces)),
         groups=_group_polygons(parts, group_of, frame),
-        arrays=_tables(parts, group_of, frame, edges, sectors),
+        arrays=_tables(parts, group_of, frame, edges, sectors, coordinates.grid),
         corners=corners,
         corner_group=corner_group,
     )
+
+
+def _moved(arrangement: Arrangement, coordinates: Coordinates) -> Arrangement:
+    """An arrangement of local coordinates in those of the scene."""
+    if coordinates.origin == (0.0, 0.0):
+        return arrangement
+    arrays = arrangement.arrays
+    return Arrangement(
+        solid=shapely.transform(arrangement.solid, coordinates.world),
+        groups=tuple(shapely.transform(g, coordinates.world) for g in arrangement.groups),
+        arrays=ObstacleArrays(
+            tree=_moved_rows(arrays.tree, YMAX + 1, coordinates),
+            vertices=_moved_rows(arrays.vertices, 2, coordinates),
+            groups=_moved_rows(arrays.groups, YMAX + 1, coordinates),
+            boundary=_moved_rows(arrays.boundary, 4, coordinates),
+            contacts=_moved_rows(arrays.contacts, 4, coordinates),
+            pinches=_moved_rows(arrays.pinches, 2, coordinates),
+            ways=arrays.ways,
+        ),
+        corners=_moved_rows(arrangement.corners, 6, coordinates),
+        corner_group=arrangement.corner_group,
+    )
+
+
+def _moved_rows(
+    rows: NDArray[np.float64], width: int, coordinates: Coordinates
+) -> NDArray[np.float64]:
+    """A table whose first columns are places x, y, x, y ..., moved."""
+    moved = rows.copy()
+    places = coordinates.world(rows[:, :width].reshape(len(rows), width // 2, 2))
+    moved[:, :width] = places.reshape(len(rows), width)
+    return _frozen(moved)
 
 
 def _as_multipolygon(geometry: shapely.Geometry) -> MultiPolygon:
@@ -86,14 +128,17 @@ def _as_multipolygon(geometry: shapely.Geometry) -> MultiPolygon:
 
 
 def _solid_faces(
-    workspace: Polygon, obstacles: Sequence[Polygon]
+    workspace: Polygon, obstacles: Sequence[Polygon], coordinates: Coordinates
 ) -> tuple[list[Polygon], list[bool]]:
     """Solid faces of the arrangement, and which of them belong to the frame."""
     xmin, ymin, xmax, ymax = workspace.bounds
     margin = FRAME_MARGIN * max(xmax - xmin, ymax - ymin)
     outer = shapely.box(xmin - margin, ymin - margin, xmax + margin, ymax + margin)
     outlines = [outer.boundary, workspace.boundary, *(o.boundary for o in obstacles)]
-    noded = shapely.union_all(outlines, grid_size=GRID)
+    noded = shapely.union_all(outlines, grid_size=coordinates.grid)
+    if coordinates.origin != (0.0, 0.0):
+        # A vertex is where float64 can say it in the coordinates of the scene.
+        noded = shapely.transform(noded, lambda xy: coordinates.local(coordinates.world(xy)))
     faces = [f for f in shapely.get_parts(shapely.polygonize([noded])) if f.area > 0.0]
     inside = shapely.STRtree([f.representative_point() for f in faces])
     in_workspace = set(inside.query(workspace, predicate="contains").tolist())
@@ -279,9 +324,10 @@ def _tables(
     frame: int,
     edges: _Edges,
     sectors: Sequence[Sector],
+    grid: float,
 ) -> ObstacleArrays:
     """Everything in the layout of the kernels; ``parts`` are sorted by group."""
-    boundary, contacts = _boundaries_and_contacts(group_of, frame, edges)
+    boundary, contacts = _boundaries_and_contacts(group_of, frame, edges, grid)
     pinches, ways = _pinches(parts, edges, sectors)
     tree, after = _tree(parts, group_of, frame)
     groups = [
@@ -379,7 +425,7 @@ Stretch = tuple[Point, Point]
 
 
 def _boundaries_and_contacts(
-    group_of: Sequence[int], frame: int, edges: _Edges
+    group_of: Sequence[int], frame: int, edges: _Edges, grid: float
 ) -> tuple[list[list[Stretch]], list[list[Stretch]]]:
     """For each group its edges towards anything else, and where it touches the frame."""
     boundary: list[list[Stretch]] = [[] for _ in range(frame + 1)]
@@ -398,11 +444,11 @@ def _boundaries_and_contacts(
             for group in groups - {frame}:
                 if v not in along[group]:
                     points[group].append((v, v))
-    contacts = [_whole_stretches(s) + p for s, p in zip(shared, points, strict=True)]
+    contacts = [_whole_stretches(s, grid) + p for s, p in zip(shared, points, strict=True)]
     return boundary, contacts
 
 
-def _whole_stretches(shared: Sequence[Stretch]) -> list[Stretch]:
+def _whole_stretches(shared: Sequence[Stretch], grid: float) -> list[Stretch]:
     """Edges in a row, straight but for the rounding of their vertices, joined to one stretch.
 
     However an obstacle's side along the border is cut up, it is one contact.
@@ -411,17 +457,17 @@ def _whole_stretches(shared: Sequence[Stretch]) -> list[Stretch]:
     forks = [edge for edge in shared if leaving[edge[0]] > 1]
     end = {a: b for a, b in shared if leaving[a] == 1}
     for a in list(end):
-        while a in end and end[a] in end and _is_straight(a, end[a], end[end[a]]):
+        while a in end and end[a] in end and _is_straight(a, end[a], end[end[a]], grid):
             end[a] = end.pop(end[a])
     return [*forks, *end.items()]
 
 
-def _is_straight(a: Point, b: Point, c: Point) -> bool:
+def _is_straight(a: Point, b: Point, c: Point, grid: float) -> bool:
     """Whether b lies between a and c, or as far beside as snapping to the grid may move it."""
     (ux, uy), (wx, wy) = (b[0] - a[0], b[1] - a[1]), (c[0] - a[0], c[1] - a[1])
     length = float(np.hypot(wx, wy))
     beside, along = abs(ux * wy - uy * wx), ux * wx + uy * wy
-    return beside <= 2.0 * GRID * length and 0.0 < along < length**2
+    return beside <= 2.0 * grid * length and 0.0 < along < length**2
 
 
 def _pinches(

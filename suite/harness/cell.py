@@ -25,6 +25,7 @@ from suite.referee.claims import improvements, plain_plan, trace
 from suite.referee.clock import Clock
 from suite.scenes.catalogue import scene_as_it_was
 from suite.scenes.scene import Query, scene_fingerprint
+from suite.store.gap import gap_of
 from suite.store.record import Cell, RunRecord
 
 TRACEBACK_LINES = 12
@@ -157,16 +158,9 @@ def _judged(query: Query, measured: RunRecord, plan: Plan) -> RunRecord:
         clearance=verdict.clearance,
         segments=verdict.segments,
         turning=verdict.turning,
-        gap=_gap(cost, record.optimum),
+        gap=gap_of(cost, record.optimum),
         claim_differs=claim is not None and abs(claim - cost) > COST_CLAIM_RELATIVE * cost,
     )
-
-
-def _gap(cost: float, optimum: float | None) -> float | None:
-    if optimum is None:
-        return None
-    # Start and goal may be one place.
-    return cost / optimum - 1.0 if optimum > 0.0 else (0.0 if cost == 0.0 else None)
 
 
 def _as_path(path: Any) -> NDArray[np.float64] | None:

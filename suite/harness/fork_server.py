@@ -21,7 +21,7 @@ from typing import Any
 
 import psutil
 
-from suite.harness.prepared import build_planner, exact_optimum, prepared_scene, referee
+from suite.harness.prepared import build_planner, make_ready
 from suite.harness.provenance import ONE_THREAD
 from suite.processes.family import adopt_orphans, kill_family, kill_group
 from suite.processes.memory import MemoryWatch
@@ -65,9 +65,7 @@ def warm(wanted: Mapping[str, Any]) -> None:
     for source, query in wanted["queries"]:
         # A scene that can't be loaded is reported by the runs that want it.
         with contextlib.suppress(Exception):
-            prepared_scene(source)
-            exact_optimum(source, query)
-            referee(source)
+            make_ready(source, query)
     with _silence():
         for name, settings in wanted["planners"]:
             _warm_planner(name, json.loads(settings), wanted["limit_s"], wanted["memory_bytes"])

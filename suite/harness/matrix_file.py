@@ -198,13 +198,15 @@ def read_matrix_file(path: Path) -> tuple[Source, MatrixFile]:
 
 def _read_toml(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise MatrixError(f"{path}: can't be read ({error.strerror}).") from error
     except UnicodeDecodeError as error:
         raise MatrixError(f"{path.name}: is not UTF-8 text (byte {error.start}).") from error
     except tomllib.TOMLDecodeError as error:
         raise MatrixError(f"{path.name}: not TOML: {sentence(error)}") from error
+    except (ValueError, RecursionError) as error:  # numbers too long, or nested too deep
+        raise MatrixError(f"{path.name}: can't be read as TOML ({error}).") from error
 
 
 def outline(name: str) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """What runs need and processes keep: scenes, their optima and referees, planners, the stream."""
 
+import warnings
 import zlib
 from collections.abc import Mapping
 from functools import lru_cache
@@ -7,13 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from suite.geometry.tolerances import OPTIMUM_RELATIVE
 from suite.planner import Planner
 from suite.plugins.discovery import load_planner
 from suite.plugins.settings import make_settings
+from suite.processes.output import show_warning
 from suite.referee.path import Referee
 from suite.scenes.catalogue import load_scene
 from suite.scenes.exact import shortest_path
-from suite.scenes.scene import Scene
+from suite.scenes.scene import Scene, SceneWarning
 from suite.store.record import Cell
 
 
@@ -44,13 +47,38 @@ def referee(source: str) -> Referee:
 
 @lru_cache(maxsize=256)
 def exact_optimum(source: str, query: str) -> float | None:
-    """Length of the exact shortest path of a query, metres; None if there is no path."""
+    """Length of the exact shortest path of a query, metres; None if there is no path.
+
+    Always computed: what a scene file states holds for the geometry that it once had. If it is
+    another length, a :class:`SceneWarning` says so.
+    """
     scene = prepared_scene(source)
-    stored = scene.stored_optimum(scene.query(query))
-    if stored is not None:
-        return stored
-    length = shortest_path(scene, scene.query(query)).length
+    wanted = scene.query(query)
+    length = shortest_path(scene, wanted).length
+    stated = scene.stored_optimum(wanted)
+    if stated is not None and not abs(stated - length) <= OPTIMUM_RELATIVE * stated:
+        warnings.warn(
+            f"{source}, query '{query}': the file states an optimum of {stated:.9g} m; it is "
+            f"{f'{length:.9g} m' if np.isfinite(length) else 'none, there is no path'}, which "
+            "counts. Take properties.optimum out, or put it right.",
+            SceneWarning,
+            stacklevel=2,
+        )
     return length if np.isfinite(length) else None
+
+
+def make_ready(source: str, query: str) -> None:
+    """Prepare a scene, the optimum of a query and the referee, in a process that others leave from.
+
+    What loading warns of, the harness has said when it read the matrix; what is new is one line.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SceneWarning)
+        prepared_scene(source)
+    with warnings.catch_warnings():
+        warnings.showwarning = show_warning
+        exact_optimum(source, query)
+    referee(source)
 
 
 @lru_cache(maxsize=256)

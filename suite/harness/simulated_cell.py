@@ -17,6 +17,7 @@ from suite.scenes.scene import Query, Scene
 from suite.simulation.record import as_data
 from suite.simulation.run import Replan, Simulation, simulate
 from suite.simulation.settings import Charge, WorldSettings
+from suite.store.gap import gap_of
 from suite.store.record import RunRecord, World, canonical_json
 from suite.typed import dataclass_of
 
@@ -60,7 +61,7 @@ def simulated(blank: RunRecord, planner: Planner, rng: np.random.Generator) -> R
         reason=reason,
         cost=cost,
         optimum=optimum,
-        gap=cost / optimum - 1.0 if cost is not None and optimum else None,
+        gap=None if cost is None else gap_of(cost, optimum),
         generations=_total(r.generations for r in done.replans),
         checks=_total(r.checks for r in done.replans),
         computed_checks=_computed(done.replans),

@@ -6,6 +6,7 @@ from statistics import median
 from typing import Any
 
 from suite.errors import KbgaBenchError
+from suite.geometry.coordinates import printed
 from suite.harness.prepared import planner_class, prepared_scene
 from suite.planner import Budget, PlanStatus
 from suite.plugins.discovery import planner_info
@@ -206,7 +207,7 @@ def exact_as_text(found: Mapping[str, Any]) -> str:
     """What :func:`exact_as_data` gives, in a few lines for people."""
     if found["path"] is None:
         return f"{found['scene']} / {found['query']}: infeasible, there is no path."
-    waypoints = " ".join(f"({x:g}, {y:g})" for x, y in found["path"])
+    waypoints = " ".join(printed(x, y) for x, y in found["path"])
     return f"{found['scene']} / {found['query']}: {found['optimum']:.9g} m\n  path  {waypoints}"
 
 
@@ -237,7 +238,7 @@ def as_text(record: RunRecord) -> str:
         waited = "; it waited for the processor" if record.contended else ""
         lines.append(f"  CPU time     {1e3 * record.cpu_s:.2f} ms{waited}")
     if record.path is not None:
-        waypoints = " ".join(f"({x:g}, {y:g})" for x, y in record.path)
+        waypoints = " ".join(printed(x, y) for x, y in record.path)
         lines.append(f"  path         {waypoints}")
     return "\n".join(lines)
 

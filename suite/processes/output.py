@@ -9,7 +9,7 @@ import io
 import os
 import sys
 from collections.abc import Iterator
-from typing import TextIO
+from typing import Any, TextIO
 
 _words: list[TextIO] = []
 """Where a command speaks while standard output is kept for it; the last one counts."""
@@ -77,6 +77,14 @@ def _leading_to(kept: int, stream: TextIO) -> TextIO:
     return open(
         kept, "w", encoding=stream.encoding, errors=stream.errors, buffering=1, closefd=False
     )
+
+
+def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    """Write a warning as one line, without the line of ours that gave it.
+
+    For ``warnings.showwarning``.
+    """
+    sys.stderr.write(f"kbga-bench: warning: {' '.join(str(message).split())}\n")
 
 
 def _drop_standard_error() -> None:

@@ -17,15 +17,15 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from suite.geometry.tolerances import GRID
+from suite.geometry.coordinates import printed
 from suite.scenes.scene import Query, Scene
 
 INTERIORS_MEET = "T********"
 """DE-9IM pattern of "enters"; `intersects` would reject paths that only touch."""
 
-NAMING_DISTANCE = 10.0 * GRID
-"""How near a place must lie to an obstacle to be named after it: the scene's arrangement is snapped
-to GRID, the obstacles as drawn are not. Only the wording of a reason depends on it."""
+NAMING_DISTANCE = 10.0
+"""How near a place must lie to an obstacle to be named after it, in widths of the scene's grid: the
+arrangement is snapped to it, what is drawn is not. Only the wording of a reason depends on it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +108,7 @@ class Referee:
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
+        self._near = NAMING_DISTANCE * scene.coordinates.grid
         self._solid = scene.arrangement.solid
         shapely.prepare(self._solid)
         self._edges = _edges(self._solid)
@@ -138,7 +139,7 @@ class Referee:
                 self._check_segments(xy, numbers)
                 self._check_pinches(xy, numbers)
             elif shapely.relate_pattern(self._solid, shapely.Point(xy[0]), INTERIORS_MEET):
-                raise _Foul(f"start and goal {_at(xy[0])} are not in free space.")
+                raise _Foul(f"start and goal {printed(*xy[0])} are not in free space.")
         except _Foul as foul:
             return Verdict(False, str(foul))
         line = shapely.LineString(xy) if len(xy) > 1 else shapely.Point(xy[0])
@@ -155,7 +156,7 @@ class Referee:
             if not np.array_equal(point, wanted):
                 verb = "starts" if what == "start" else "ends"
                 raise _Foul(
-                    f"{verb} at {_at(point)}, not at the {what} {_at(wanted)}: "
+                    f"{verb} at {printed(*point)}, not at the {what} {printed(*wanted)}: "
                     f"they are {np.hypot(*(point - wanted)):.3g} m apart."
                 )
 
@@ -165,7 +166,7 @@ class Referee:
         outside = np.any((xy < (xmin, ymin)) | (xy > (xmax, ymax)), axis=1)
         if outside.any():
             i = int(np.argmax(outside))
-            raise _Foul(f"point {numbers[i] + 1}, {_at(xy[i])}, lies outside the workspace.")
+            raise _Foul(f"point {numbers[i] + 1}, {printed(*xy[i])}, lies outside the workspace.")
 
     def _check_segments(self, xy: NDArray[np.float64], numbers: NDArray[np.int64]) -> None:
         segments = _segments(xy)
@@ -187,7 +188,7 @@ class Referee:
             onward = xy[i + 2] if arrives_at_bend else xy[i + 1]
             if self._sector(pinch, xy[i]) != self._sector(pinch, onward):
                 raise _Foul(
-                    f"{_segment(xy, numbers, i)}, slips through {_at(point)}, "
+                    f"{_segment(xy, numbers, i)}, slips through {printed(*point)}, "
                     f"a single point in which {self._neighbours(point)} touch."
                 )
 
@@ -224,17 +225,16 @@ class Referee:
         entry, probe = shapely.line_interpolate_point(first, (0.0, min(first.length / 2, 0.001)))
         names = self._named(probe, INTERIORS_MEET)
         if names:
-            return f"enters {names[0]} at {_at(_xy(entry))}"
+            return f"enters {names[0]} at {printed(*_xy(entry))}"
         if not self._scene.workspace.covers(probe):
-            return f"leaves the workspace at {_at(_xy(entry))}"
-        return (
-            f"runs between {self._neighbours(_xy(probe))} from {_at(_xy(entry))}, where they touch"
-        )
+            return f"leaves the workspace at {printed(*_xy(entry))}"
+        neighbours = self._neighbours(_xy(probe))
+        return f"runs between {neighbours} from {printed(*_xy(entry))}, where they touch"
 
     def _neighbours(self, point: NDArray[np.float64]) -> str:
         place = shapely.Point(point)
         names = self._named(place)
-        if shapely.dwithin(self._scene.workspace.boundary, place, NAMING_DISTANCE):
+        if shapely.dwithin(self._scene.workspace.boundary, place, self._near):
             names.append("the border of the workspace")
         return " and ".join(names) if len(names) > 1 else f"parts of {', '.join(names)}"
 
@@ -244,7 +244,7 @@ class Referee:
             o.name
             for o in self._scene.obstacles
             if (
-                shapely.dwithin(o.polygon, place, NAMING_DISTANCE)
+                shapely.dwithin(o.polygon, place, self._near)
                 if pattern is None
                 else shapely.relate_pattern(o.polygon, place, pattern)
             )
@@ -269,7 +269,7 @@ def _as_path(path: Any) -> NDArray[np.float64]:
     unfit = ~np.isfinite(xy).all(axis=1)
     if unfit.any():
         i = int(np.argmax(unfit))
-        raise _Foul(f"point {i + 1} is {_at(xy[i])}. Coordinates must be finite numbers.")
+        raise _Foul(f"point {i + 1} is {printed(*xy[i])}. Coordinates must be finite numbers.")
     return xy
 
 
@@ -315,12 +315,8 @@ def _turning(xy: NDArray[np.float64]) -> float:
 
 def _segment(xy: NDArray[np.float64], numbers: NDArray[np.int64], i: int) -> str:
     # Numbered from 1, and as the planner returned the path, repeats included.
-    return f"segment {numbers[i + 1]}, from {_at(xy[i])} to {_at(xy[i + 1])}"
+    return f"segment {numbers[i + 1]}, from {printed(*xy[i])} to {printed(*xy[i + 1])}"
 
 
 def _xy(point: shapely.Point) -> NDArray[np.float64]:
     return shapely.get_coordinates(point)[0]
-
-
-def _at(point: NDArray[np.float64]) -> str:
-    return f"({point[0]:.6g}, {point[1]:.6g})"

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from suite.report.optima import check_optima
 from suite.report.paper.contrasts import contrast_table
 from suite.report.paper.tables import COST_NOTE, paper_tables
 from suite.report.paper.verdicts import Rows, verdict_table
@@ -71,10 +72,11 @@ def all_tables(
     Raises
     ------
     KbgaBenchError
-        If no run is of the reference.
+        If no run is of the reference, or a path is shorter than the shortest.
     """
     check_reference(runs["variant"], reference)
     current = newest(runs)
+    check_optima(current)
     left_out = len(runs) - len(current)
     kept, busy = fair(current), dropped_note(current)
     driven = kept[is_simulated(kept)]

@@ -152,8 +152,9 @@ def as_texts(table: Table) -> pd.DataFrame:
     columns = {}
     for name in table.frame.columns:
         kind = table.kind(str(name))
+        infinite = table.infinite_in.get(str(name), table.infinite)
         columns[name] = [
-            table.infinite if _is_infinite(value) else _as_text(value, kind)
+            infinite if _is_infinite(value) else _as_text(value, kind)
             for value in table.frame[name]
         ]
     return pd.DataFrame(columns)

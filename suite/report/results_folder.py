@@ -28,6 +28,7 @@ from suite.report.figures.studies import study_figures
 from suite.report.figures.style import LINES, heading
 from suite.report.formats import render
 from suite.report.kinds import FigureFormat, Part, TableFormat
+from suite.report.optima import check_optima
 from suite.report.paper.pictures import paper_pictures
 from suite.report.rows import cheapest, feasible, is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
@@ -90,6 +91,7 @@ def write_results(
     if runs.empty:
         raise StoreError(f"{store}: it holds no runs yet. `kbga-bench run` fills it.")
     current = newest(runs)
+    check_optima(current)
     scenes = _scenes(current)
     folder = made_folder(directory)
     tables = read_tables(store)

@@ -8,6 +8,8 @@ import pandas as pd
 
 from suite.errors import KbgaBenchError
 
+INFINITE = "infinite"
+
 
 class Kind(Enum):
     """What the numbers of a column are: it says how a reader wants them printed."""
@@ -33,6 +35,7 @@ class Table:
         in brackets at the end of its name: (m), (%), (s), (ms), (us).
     note : what a reader must know to read it rightly.
     infinite : what is printed for an infinite number; CSV holds ``inf``.
+    infinite_in : the same for some of the columns.
     detail : whether it holds the rows behind another table, too many to be printed among others.
     kinds : of columns of numbers that are neither times, by their unit, nor plain measures.
     """
@@ -41,9 +44,10 @@ class Table:
     title: str
     frame: pd.DataFrame
     note: str = ""
-    infinite: str = "infinite"
+    infinite: str = INFINITE
     detail: bool = False
     kinds: Mapping[str, Kind] = field(default_factory=dict)
+    infinite_in: Mapping[str, str] = field(default_factory=dict)
 
     def kind(self, column: str) -> Kind:
         """What the numbers of a column are."""

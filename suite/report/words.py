@@ -1,6 +1,7 @@
 """Numbers and sentences as tables, notes and pictures write them."""
 
 from collections.abc import Iterable
+from math import inf
 
 
 def fixed(value: float, digits: int = 2) -> str:
@@ -8,9 +9,11 @@ def fixed(value: float, digits: int = 2) -> str:
 
     Examples
     --------
-    >>> fixed(-0.0001), fixed(2.345, 1)
-    ('0.00', '2.3')
+    >>> fixed(-0.0001), fixed(2.345, 1), fixed(inf)
+    ('0.00', '2.3', 'infinite')
     """
+    if value == inf:
+        return "infinite"
     return f"{round(value, digits) + 0.0:.{digits}f}"
 
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from suite.errors import SceneError
 from suite.geometry.tolerances import LARGEST
-from suite.typed import MisfitError, typed
+from suite.typed import MisfitError, shown, typed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,8 +67,11 @@ def make_motion(waypoints: ArrayLike) -> Motion:
         If it is no such table.
     """
     try:
-        rows = np.array(waypoints, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+        table = np.array(waypoints)
+        if table.dtype.kind in "SUb":
+            raise TypeError  # numpy would read "1" and true as numbers
+        rows = table.astype(np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
         raise SceneError("its waypoints are no table of numbers. Give [[t, dx, dy], ...].") from (
             error
         )
@@ -81,7 +84,8 @@ def make_motion(waypoints: ArrayLike) -> Motion:
     times = rows[:, 0]
     if times[0] < 0.0 or (np.diff(times) <= 0.0).any():
         raise SceneError(
-            f"the times of its waypoints are {times.tolist()}. They must rise, from 0 s or later."
+            f"the times of its waypoints are {shown(times.tolist())}. "
+            "They must rise, from 0 s or later."
         )
     return Motion(_frozen(times.copy()), _frozen(rows[:, 1:].copy()))
 
@@ -103,9 +107,9 @@ def constant_speed(velocity: tuple[float, float], start: float, stop: float) -> 
     return make_motion([(start, 0.0, 0.0), (stop, velocity[0] * span, velocity[1] * span)])
 
 
-_Length = Annotated[float, Meta(ge=0.0, le=LARGEST, description="a finite number, 0 or more")]
+Length = Annotated[float, Meta(ge=0.0, le=LARGEST, description="a finite number, 0 or more")]
 _Coordinate = Annotated[float, Meta(ge=-LARGEST, le=LARGEST, description="a finite number")]
-_Pair = tuple[_Coordinate, _Coordinate]
+Pair = tuple[_Coordinate, _Coordinate]
 
 
 class Detection(Struct, frozen=True, forbid_unknown_fields=True):
@@ -114,7 +118,7 @@ class Detection(Struct, frozen=True, forbid_unknown_fields=True):
     range : metres from the robot to the obstacle's edge; None for the sensing range of the robot.
     """
 
-    range: _Length | None = None
+    range: Length | None = None
 
 
 class Removal(Struct, frozen=True, forbid_unknown_fields=True):
@@ -125,18 +129,18 @@ class Removal(Struct, frozen=True, forbid_unknown_fields=True):
     distance : metres from the place within which the robot must come.
     """
 
-    time: _Length | None = None
-    place: Annotated[_Pair, Meta(description="[x, y], metres")] | None = None
-    distance: _Length = 0.0
+    time: Length | None = None
+    place: Annotated[Pair, Meta(description="[x, y], metres")] | None = None
+    distance: Length = 0.0
 
 
 class _Motion(Struct, frozen=True, forbid_unknown_fields=True):
     """Motion as a file has it."""
 
     waypoints: Any = None
-    velocity: Annotated[_Pair, Meta(description="[vx, vy], metres per second")] | None = None
-    start: _Length = 0.0
-    stop: _Length | None = None
+    velocity: Annotated[Pair, Meta(description="[vx, vy], metres per second")] | None = None
+    start: Length = 0.0
+    stop: Length | None = None
 
 
 class _Properties(Struct, frozen=True):
@@ -150,7 +154,7 @@ class _Properties(Struct, frozen=True):
     removal: Annotated[Removal, Meta(description="an object of time, place, distance")] | None = (
         None
     )
-    appears: _Length = 0.0
+    appears: Length = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -203,18 +207,26 @@ def parse_dynamics(properties: Mapping[str, Any]) -> Dynamics | None:
     SceneError
         With what is wrong and how to mend it; the caller says where.
     """
-    given = {key: properties[key] for key in _KEYS if properties.get(key) is not None}
+    given = {
+        key: _without_nulls(properties[key]) for key in _KEYS if properties.get(key) is not None
+    }
     if not given:
         return None
     try:
         read = typed(given, _Properties)
     except MisfitError as error:
         # The name of a value is in the error; that of a table with a wrong key is not.
-        place = "" if str(error).startswith(str(error.keys[-1])) else f"{error.keys[-1]}: "
+        name = next(key for key in reversed(error.keys) if isinstance(key, str))
+        place = "" if str(error).startswith(name) else f"{name}: "
         raise SceneError(f"its {place}{error}") from error
     if read.removal is not None:
         _check_removal(read.removal, given["removal"])
     return Dynamics(_motion(read.motion), read.detection, read.removal, read.appears)
+
+
+def _without_nulls(value: Any) -> Any:
+    """An object without what it leaves out by saying null; anything else as it is."""
+    return {k: v for k, v in value.items() if v is not None} if isinstance(value, dict) else value
 
 
 def as_properties(dynamics: Dynamics | None) -> dict[str, Any]:

@@ -31,16 +31,21 @@ Properties of an obstacle that changes over time (seconds from the start of a ru
 ``appears``
     A time, before which it is not there.
 
-Members of the collection that the suite reads: ``name`` (default: the file's name) and
-``properties``, an object of which it knows ``description``, ``figure``, ``paper_best``,
-``reconstruction`` and ``optimum`` (from query name to exact optimal length, metres); of a dynamic
-scene also ``world``, the default settings of its simulation (see
+Members of the collection that the suite reads: ``name`` (default: the file's name); ``crs``
+(default: metres in the plane; one that is not known to be that is refused, see
+:mod:`suite.scenes.crs`) and ``properties``, an object of which it knows ``description``,
+``figure``, ``paper_best``, ``reconstruction`` and ``optimum`` (from query name to exact optimal
+length, metres: what the file says of itself, for a reader; results are measured by the one that is
+computed); of a dynamic scene also ``world``, the default settings of its simulation (see
 :class:`suite.simulation.settings.WorldSettings`), and ``gates``, from a name to a segment
 ``[[x, y], [x, y]]`` across an opening, so that a run can say which one the robot passed. Others
 are kept. Any JSON, GIS or shapely tool reads the file.
+
+Whatever may be left out may be null, as geopandas writes it, and names may be empty, as QGIS does.
 """
 
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -49,11 +54,22 @@ from shapely.geometry import Polygon, mapping
 
 from suite.errors import SceneError, check_file, writing
 from suite.geometry.tolerances import LARGEST
-from suite.scenes.dynamics import as_properties, parse_dynamics
+from suite.scenes.crs import check_crs
+from suite.scenes.dynamics import Length, Pair, as_properties, parse_dynamics
 from suite.scenes.modifiers import SUFFIXES
 from suite.scenes.scene import DEFAULT_QUERY, Obstacle, Scene, make_scene
+from suite.typed import MisfitError, shown, typed
 
 ROLES = ("workspace", "obstacle", "start", "goal")
+
+LONGEST_NAME = 200
+"""Characters: names stand in tables, file names and errors."""
+
+_LINE = re.compile(rf"[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]{{1,{LONGEST_NAME}}}")
+"""No control characters, no ends of lines, nothing that UTF-8 can't hold."""
+
+_READ = ("optimum", "world", "gates")
+"""Properties of the collection that are read, and may be null for being left out."""
 
 
 def read_scene(path: Path, *, inflate: float = 0.0) -> Scene:
@@ -79,23 +95,25 @@ def read_scene(path: Path, *, inflate: float = 0.0) -> Scene:
     document = _load(path)
     if document.get("type") != "FeatureCollection":
         raise SceneError(
-            f"{where}: its type is {document.get('type')!r}, not 'FeatureCollection'. "
+            f"{where}: its type is {shown(document.get('type'))}, not 'FeatureCollection'. "
             "Put workspace, obstacles, start and goal into one FeatureCollection."
         )
     features = document.get("features")
     if not isinstance(features, list):
         raise SceneError(f"{where}: 'features' is missing or no list.")
+    name = _name(where, "the collection", document.get("name"), path.stem)
+    properties = _properties(where, document)
     workspaces: list[Polygon] = []
     obstacles: list[Obstacle] = []
     ends: dict[str, dict[str, Any]] = {"start": {}, "goal": {}}
     for number, feature in enumerate(features, 1):
-        role, properties, geometry = _feature(where, number, feature)
+        role, own, geometry = _feature(where, number, feature)
         if role == "workspace":
             workspaces += _polygons(where, f"feature {number} (workspace)", geometry)
         elif role == "obstacle":
-            obstacles += _obstacle(where, len(obstacles) + 1, properties, geometry)
+            obstacles += _obstacle(where, number, len(obstacles) + 1, own, geometry)
         else:
-            query = str(properties.get("query", DEFAULT_QUERY))
+            query = _name(where, f"feature {number}, query", own.get("query"), DEFAULT_QUERY)
             if query in ends[role]:
                 raise SceneError(
                     f"{where}, feature {number}: query '{query}' has two points of role '{role}'. "
@@ -106,13 +124,12 @@ def read_scene(path: Path, *, inflate: float = 0.0) -> Scene:
         raise SceneError(
             f"{where}: {len(workspaces)} workspaces. Give one Polygon of role 'workspace'."
         )
-    own = document.get("properties")
     return make_scene(
-        str(document.get("name", path.stem)),
+        name,
         workspaces[0],
         obstacles,
         _paired(where, ends["start"], ends["goal"]),
-        properties=own if isinstance(own, dict) else {},
+        properties=properties,
         path=path,
         inflate=inflate,
     )
@@ -120,7 +137,7 @@ def read_scene(path: Path, *, inflate: float = 0.0) -> Scene:
 
 def _load(path: Path) -> dict[str, Any]:
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")  # a byte order mark says nothing of UTF-8
     except OSError as error:
         raise SceneError(f"{path}: can't be read ({error.strerror}).") from error
     except UnicodeDecodeError as error:
@@ -138,6 +155,63 @@ def _load(path: Path) -> dict[str, Any]:
     return document
 
 
+def _name(where: str, what: str, given: Any, default: str) -> str:
+    """A name that is given, or the default for one that is left out, null or empty."""
+    if given is None or given == "":
+        return default
+    # A table of names of which some are missing holds whole numbers as 1.0.
+    name = str(given) if isinstance(given, str | int | float) else ""
+    if isinstance(given, bool) or given != given or not _LINE.fullmatch(name):
+        raise SceneError(
+            f"{where}, {what}: its name is {shown(given)}. "
+            f"Give a text of one line and at most {LONGEST_NAME} characters."
+        )
+    return name
+
+
+def _properties(where: str, document: Mapping[str, Any]) -> dict[str, Any]:
+    """What the collection says of itself, with its crs, as :func:`write_scene` takes it."""
+    given = document.get("properties")
+    if not isinstance(given, dict | None):
+        raise SceneError(f"{where}: its properties are {shown(given)}. Give an object.")
+    own = {key: v for key, v in (given or {}).items() if v is not None or key not in _READ}
+    if "crs" in own:
+        raise SceneError(f"{where}: its properties have a crs. Make it a member of the collection.")
+    try:
+        check_crs(document.get("crs"))
+        _check_optimum(own.get("optimum", {}))
+        _check_gates(own.get("gates", {}))
+    except SceneError as error:
+        raise SceneError(f"{where}: {error}") from error
+    return own if document.get("crs") is None else own | {"crs": document["crs"]}
+
+
+def _check_optimum(optima: Any) -> None:
+    mend = 'Give {"QUERY": metres}, or leave it out: it is computed.'
+    if not isinstance(optima, dict):
+        raise SceneError(f"its property 'optimum' is {shown(optima)}. {mend}")
+    for query, length in optima.items():
+        try:
+            if length is not None:
+                typed(length, Length)
+        except MisfitError as error:
+            raise SceneError(
+                f"its property 'optimum' of {shown(query)} is {shown(length)}. {mend}"
+            ) from error
+
+
+def _check_gates(gates: Any) -> None:
+    if not isinstance(gates, dict):
+        raise SceneError(f"its property 'gates' is {shown(gates)}. Give an object of segments.")
+    for name, gate in gates.items():
+        try:
+            typed(gate, tuple[Pair, Pair])
+        except MisfitError as error:
+            raise SceneError(
+                f"its gate {shown(name)} is {shown(gate)}. Give a segment [[x, y], [x, y]]."
+            ) from error
+
+
 def _feature(where: str, number: int, feature: Any) -> tuple[str, Mapping[str, Any], Any]:
     if not isinstance(feature, dict) or feature.get("type") != "Feature":
         raise SceneError(f"{where}, feature {number}: is no GeoJSON Feature.")
@@ -145,7 +219,7 @@ def _feature(where: str, number: int, feature: Any) -> tuple[str, Mapping[str, A
     properties = properties if isinstance(properties, dict) else {}
     role = properties.get("role")
     if role not in ROLES:
-        problem = "has no role" if role is None else f"has the unknown role {role!r}"
+        problem = "has no role" if role is None else f"has the unknown role {shown(role)}"
         raise SceneError(
             f"{where}, feature {number}: {problem}. "
             f"Set properties.role to one of {', '.join(ROLES)}."
@@ -154,9 +228,9 @@ def _feature(where: str, number: int, feature: Any) -> tuple[str, Mapping[str, A
 
 
 def _obstacle(
-    where: str, number: int, properties: Mapping[str, Any], geometry: Any
+    where: str, number: int, count: int, properties: Mapping[str, Any], geometry: Any
 ) -> list[Obstacle]:
-    name = str(properties.get("name", f"obstacle {number}"))
+    name = _name(where, f"feature {number}", properties.get("name"), f"obstacle {count}")
     polygons = _polygons(where, name, geometry)
     try:
         dynamics = parse_dynamics(properties)
@@ -170,7 +244,7 @@ def _obstacle(
 def _polygons(where: str, what: str, geometry: Any) -> list[Polygon]:
     kind = geometry.get("type") if isinstance(geometry, dict) else None
     if kind not in ("Polygon", "MultiPolygon"):
-        raise SceneError(f"{where}, {what}: its geometry is {kind!r}; give a Polygon.")
+        raise SceneError(f"{where}, {what}: its geometry is {shown(kind)}; give a Polygon.")
     members = geometry.get("coordinates")
     members = [members] if kind == "Polygon" else members
     if not isinstance(members, list) or not members:
@@ -201,11 +275,11 @@ def _xy(where: str, what: str, point: Any) -> tuple[float, float]:
     if len(numbers) != 2 or any(
         isinstance(v, bool) or not isinstance(v, int | float) for v in numbers
     ):
-        raise SceneError(f"{where}, {what}: {point!r} is not [x, y].")
+        raise SceneError(f"{where}, {what}: {shown(point)} is not [x, y].")
     x, y = numbers
     if not (abs(x) <= LARGEST and abs(y) <= LARGEST):  # so written, NaN is refused too
         raise SceneError(
-            f"{where}, {what}: {point!s:.60}. "
+            f"{where}, {what}: {shown(point)}. "
             f"Coordinates must be finite numbers, in metres, up to {LARGEST:g}."
         )
     return float(x) + 0.0, float(y) + 0.0
@@ -215,7 +289,7 @@ def _point(where: str, number: int, role: str, geometry: Any) -> tuple[float, fl
     kind = geometry.get("type") if isinstance(geometry, dict) else None
     if kind != "Point":
         raise SceneError(
-            f"{where}, feature {number} ({role}): its geometry is {kind!r}; give a Point."
+            f"{where}, feature {number} ({role}): its geometry is {shown(kind)}; give a Point."
         )
     return _xy(where, f"feature {number} ({role})", geometry.get("coordinates"))
 
@@ -263,7 +337,9 @@ def write_scene(scene: Scene, path: Path) -> None:
             geometry = {"type": "Point", "coordinates": point.tolist()}
             features.append(_as_feature({"role": role, "query": query.name}, geometry))
     lines = ",\n".join(json.dumps(f) for f in features)
-    head = json.dumps({"name": scene.name, "properties": dict(scene.properties)}, indent=1)
+    properties = dict(scene.properties)
+    crs = {"crs": properties.pop("crs")} if "crs" in properties else {}
+    head = json.dumps({"name": scene.name, **crs, "properties": properties}, indent=1)
     text = f'{head[:-2]},\n "type": "FeatureCollection",\n "features": [\n{lines}\n]}}\n'
     with writing(path, SceneError):
         path.write_text(text, encoding="utf-8")

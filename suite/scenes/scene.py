@@ -10,7 +10,6 @@ import warnings
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -19,16 +18,23 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 from shapely.affinity import translate
-from shapely.geometry import LinearRing, LineString, Polygon
-from shapely.validation import explain_validity
+from shapely.geometry import Polygon
 
 from suite.errors import SceneError
 from suite.geometry.arrangement import Arrangement, arrange
+from suite.geometry.coordinates import Coordinates, coordinates_of, printed
+from suite.geometry.coverage import left_open
+from suite.geometry.growth import grown, shrunk
 from suite.geometry.kernels import PARTS, ObstacleArrays
-from suite.geometry.tolerances import GRID, GRID_DECIMALS, LARGEST
+from suite.geometry.tolerances import LARGEST
 from suite.scenes.dynamics import Dynamics, as_text
+from suite.scenes.polygons import as_polygon, check_polygon, check_width
 
 DEFAULT_QUERY = "main"
+
+COARSEST = 1e-6
+"""Widest grid that a scene may have, as a share of the workspace's larger side: lengths of paths
+are compared to this."""
 
 
 class SceneWarning(UserWarning):
@@ -100,12 +106,18 @@ class Scene:
             query.goal.setflags(write=False)
 
     @cached_property
+    def coordinates(self) -> Coordinates:
+        """Where its coordinates lie, and the grid on which they are told apart."""
+        return coordinates_of(self.workspace.bounds)
+
+    @cached_property
     def arrangement(self) -> Arrangement:
         """The plane divided into free space, obstacle groups and the frame."""
-        return arrange(
-            self.workspace,
-            [p for o in self.obstacles for p in _inside(self.workspace, o.polygon, o.moves)],
-        )
+        return arrange(self.workspace, [p for o in self.obstacles for p in self.closed_by(o)])
+
+    def closed_by(self, obstacle: Obstacle) -> list[Polygon]:
+        """What an obstacle closes of the workspace; one that moves is cut at the border."""
+        return _inside(self.workspace, obstacle.polygon, obstacle.moves, self.coordinates)
 
     @property
     def arrays(self) -> ObstacleArrays:
@@ -223,20 +235,24 @@ def make_scene(
     [9.0, 1.0]
     """
     where = path.name if path is not None else name
-    room = _as_polygon(where, "workspace", workspace)
+    room = as_polygon(where, "workspace", workspace)
     named = [
-        Obstacle(o.name, _as_polygon(where, o.name, o.polygon), o.dynamics)
+        Obstacle(o.name, as_polygon(where, o.name, o.polygon), o.dynamics)
         if isinstance(o, Obstacle)
-        else Obstacle(f"obstacle {i}", _as_polygon(where, f"obstacle {i}", o))
+        else Obstacle(f"obstacle {i}", as_polygon(where, f"obstacle {i}", o))
         for i, o in enumerate(obstacles, 1)
     ]
-    _check_polygon(where, "workspace", room)
+    check_polygon(where, "workspace", room)
+    coordinates = _coordinates(where, room)
+    check_width(where, "workspace", room, coordinates)
     for obstacle in named:
-        _check_polygon(where, obstacle.name, obstacle.polygon)
+        check_polygon(where, obstacle.name, obstacle.polygon)
+        check_width(where, obstacle.name, obstacle.polygon, coordinates)
     _check_unique(where, "obstacles", [o.name for o in named])
     if not np.isfinite(inflate) or inflate < 0.0:
         raise SceneError(f"{where}: inflate is {inflate}. Give a radius of 0 m or more.")
     room, named = _normalise(where, room, named, inflate)
+    coordinates = coordinates_of(room.bounds)
     ends = queries if isinstance(queries, Mapping) else {DEFAULT_QUERY: queries}
     if not ends:
         raise SceneError(
@@ -246,10 +262,11 @@ def make_scene(
         name=name,
         workspace=room,
         obstacles=tuple(named),
-        queries=tuple(_as_query(where, key, pair) for key, pair in ends.items()),
+        queries=tuple(_as_query(where, key, pair, coordinates) for key, pair in ends.items()),
         properties=MappingProxyType(_still_true(properties or {}, inflate)),
         path=path,
     )
+    _check_closed(where, scene)
     # What comes upon an end later is what dynamic scenes are for: a hit, or a goal to wait for.
     first = scene_at(scene, 0.0) if scene.is_dynamic else scene
     for query in scene.queries:
@@ -271,105 +288,52 @@ def _check_unique(where: str, what: str, names: Sequence[str]) -> None:
             )
 
 
-def _as_polygon(where: str, what: str, shape: Polygon | ArrayLike) -> Polygon:
-    """Make a polygon of vertices (n, 2); a polygon stays itself."""
-    if isinstance(shape, Polygon):
-        return shape
-    mend = "Give a shapely Polygon, or its vertices as an array (n, 2)."
-    if isinstance(shape, shapely.Geometry):
-        raise SceneError(f"{where}, {what}: it is a {type(shape).__name__}. {mend}")
-    try:
-        xy = np.array(shape, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise SceneError(f"{where}, {what}: it is no array of numbers. {mend}") from error
-    if xy.ndim != 2 or xy.shape[1] != 2:
-        raise SceneError(f"{where}, {what}: its shape is {xy.shape}. {mend}")
-    # Before shapely sees them: it refuses short rings, and warns of NaN, in words of its own.
-    _check_coordinates(where, what, xy)
-    _check_ring(where, what, xy)
-    return Polygon(xy)
-
-
-def _check_coordinates(where: str, what: str, xy: NDArray[np.float64]) -> None:
-    bad = np.flatnonzero(~(np.abs(xy) <= LARGEST).all(axis=1))  # so written, NaN is bad too
-    if bad.size:
-        x, y = xy[bad[0]]
+def _coordinates(where: str, room: Polygon) -> Coordinates:
+    """The coordinates of a room, if they can tell its places apart."""
+    coordinates = coordinates_of(room.bounds)
+    xmin, ymin, xmax, ymax = room.bounds
+    side = max(xmax - xmin, ymax - ymin)
+    if coordinates.grid > COARSEST * side:
         raise SceneError(
-            f"{where}, {what}: vertex {bad[0] + 1} is ({x}, {y}). "
-            f"Coordinates must be finite numbers, in metres, up to {LARGEST:g}."
+            f"{where}, workspace: {side:g} m wide, at {printed(xmin, ymin)}, where coordinates "
+            f"are told apart to {coordinates.grid:g} m. Shift the scene towards (0, 0)."
         )
-
-
-def _check_ring(where: str, what: str, xy: NDArray[np.float64]) -> None:
-    corners = np.unique(xy, axis=0)
-    if len(corners) < 3:
-        raise SceneError(
-            f"{where}, {what}: only {len(corners)} different vertices. A ring needs three."
-        )
-
-
-def _check_polygon(where: str, what: str, polygon: Polygon) -> None:
-    """Refuse a polygon that is not one, and say where it goes wrong."""
-    _check_coordinates(where, what, shapely.get_coordinates(polygon))
-    for ring in (polygon.exterior, *polygon.interiors):
-        _check_ring(where, what, shapely.get_coordinates(ring))
-        crossing = _first_crossing(ring)
-        if crossing is not None:
-            i, j, x, y = crossing
-            raise SceneError(
-                f"{where}, {what}: edges {i} and {j} cross at ({x:g}, {y:g}). "
-                "List its vertices in order, or split it in two."
-            )
-    if polygon.area == 0.0:
-        raise SceneError(f"{where}, {what}: its area is zero. Give it some width, or leave it out.")
-    if not polygon.is_valid:
-        raise SceneError(
-            f"{where}, {what}: {explain_validity(polygon)}. Its rings must not cross, overlap "
-            "or touch along a line; split it in several polygons."
-        )
-    if shapely.set_precision(polygon, GRID).is_empty:
-        raise SceneError(f"{where}, {what}: narrower than {GRID:g} m. Coordinates are metres.")
-
-
-def _first_crossing(ring: LinearRing) -> tuple[int, int, float, float] | None:
-    """Numbers (from 1) of the first two edges of a ring that cross, and where; None if none do."""
-    if ring.is_simple:
-        return None
-    edges = [LineString(ends) for ends in pairwise(ring.coords)]
-    pairs = shapely.STRtree(edges).query(edges, predicate="crosses").T.tolist()
-    if not pairs:
-        return None
-    i, j = min(pairs)
-    point = edges[i].intersection(edges[j])
-    return i + 1, j + 1, point.x, point.y
+    return coordinates
 
 
 def _normalise(
     where: str, workspace: Polygon, obstacles: Sequence[Obstacle], inflate: float
 ) -> tuple[Polygon, list[Obstacle]]:
     """Make holes of the workspace obstacles, grow by the robot, and cut at the workspace."""
+    coordinates = coordinates_of(workspace.bounds)
     room = Polygon(workspace.exterior)
     holes = [
         Obstacle(f"hole {i} of the workspace", Polygon(h))
         for i, h in enumerate(workspace.interiors, 1)
     ]
     if inflate > 0.0:
-        shrunk = room.buffer(-inflate)
-        if not isinstance(shrunk, Polygon) or shrunk.is_empty:
+        left = shapely.transform(
+            shrunk(shapely.transform(room, coordinates.local), inflate, coordinates.grid),
+            coordinates.world,
+        )
+        if not isinstance(left, Polygon) or left.is_empty:
             raise SceneError(
                 f"{where}: a robot of radius {inflate} m has no room in the workspace."
             )
-        room = shrunk
+        room = left
     # A vertex computed on a slanted border lies 1e-16 beside it: that does not stick out.
-    reach = room.buffer(GRID, join_style="mitre")
+    reach = shapely.transform(room, coordinates.local).buffer(coordinates.grid, join_style="mitre")
     shapely.prepare(reach)
     kept: list[Obstacle] = []
     for obstacle in (*obstacles, *holes):
-        polygon = obstacle.polygon.buffer(inflate) if inflate > 0.0 else obstacle.polygon
-        if obstacle.moves or reach.covers(polygon):
+        local, polygon = shapely.transform(obstacle.polygon, coordinates.local), obstacle.polygon
+        if inflate > 0.0:
+            local = grown(local, inflate, coordinates.grid)
+            polygon = shapely.transform(local, coordinates.world)
+        if obstacle.moves or reach.covers(local):
             kept.append(Obstacle(obstacle.name, polygon, obstacle.dynamics))
             continue
-        pieces = _inside(room, polygon)
+        pieces = _inside(room, polygon, True, coordinates)
         if inflate == 0.0:
             warnings.warn(
                 f"{where}, {obstacle.name}: sticks out of the workspace and was cut at its border"
@@ -383,15 +347,18 @@ def _normalise(
     return room, kept
 
 
-def _inside(room: Polygon, polygon: Polygon, cut: bool = True) -> list[Polygon]:
+def _inside(room: Polygon, polygon: Polygon, cut: bool, coordinates: Coordinates) -> list[Polygon]:
     """The pieces of a polygon within a workspace; the polygon itself if it need not be cut."""
     if not cut:
         return [polygon]
-    pieces = shapely.get_parts(room.intersection(polygon))
+    local, within = (shapely.transform(p, coordinates.local) for p in (polygon, room))
+    pieces = shapely.get_parts(shapely.transform(within.intersection(local), coordinates.world))
     return [p for p in pieces if isinstance(p, Polygon) and p.area > 0.0]
 
 
-def _as_query(where: str, name: str, ends: tuple[ArrayLike, ArrayLike]) -> Query:
+def _as_query(
+    where: str, name: str, ends: tuple[ArrayLike, ArrayLike], coordinates: Coordinates
+) -> Query:
     try:
         start, goal = ends
     except (TypeError, ValueError) as error:
@@ -400,12 +367,14 @@ def _as_query(where: str, name: str, ends: tuple[ArrayLike, ArrayLike]) -> Query
         ) from error
     return Query(
         name,
-        _as_point(where, f"start of query '{name}'", start),
-        _as_point(where, f"goal of query '{name}'", goal),
+        _as_point(where, f"start of query '{name}'", start, coordinates),
+        _as_point(where, f"goal of query '{name}'", goal, coordinates),
     )
 
 
-def _as_point(where: str, what: str, point: ArrayLike) -> NDArray[np.float64]:
+def _as_point(
+    where: str, what: str, point: ArrayLike, coordinates: Coordinates
+) -> NDArray[np.float64]:
     try:
         xy = np.array(point, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -418,24 +387,34 @@ def _as_point(where: str, what: str, point: ArrayLike) -> NDArray[np.float64]:
             f"Coordinates must be finite numbers, in metres, up to {LARGEST:g}."
         )
     # On the grid of the obstacles, so that a start on a vertex or a border stays there.
-    xy = np.round(xy, GRID_DECIMALS)
-    xy += 0.0  # -0.0 and 0.0 are one place; hashes of rows must agree
+    xy = coordinates.snapped(xy)
     xy.setflags(write=False)
     return xy
 
 
-def _check_free(where: str, scene: Scene, what: str, point: NDArray[np.float64]) -> None:
-    place = shapely.Point(point)
-    if scene.workspace.distance(place) > GRID:
+def _check_closed(where: str, scene: Scene) -> None:
+    """Refuse a scene of which something that was drawn would not be closed."""
+    drawn = [(o, piece) for o in scene.obstacles for piece in scene.closed_by(o)]
+    solid = scene.arrangement.solid
+    for i in left_open(solid, [piece for _, piece in drawn], scene.coordinates):
         raise SceneError(
-            f"{where}, {what}: ({point[0]:g}, {point[1]:g}) lies outside the workspace "
-            f"{tuple(scene.bounds)}. Move it inside."
+            f"{where}, {drawn[i][0].name}: rounding would leave a part of it open. "
+            "Draw it with fewer vertices that are nearly the same."
+        )
+
+
+def _check_free(where: str, scene: Scene, what: str, point: NDArray[np.float64]) -> None:
+    place, grid = shapely.Point(point), scene.coordinates.grid
+    if scene.workspace.distance(place) > grid:
+        raise SceneError(
+            f"{where}, {what}: {printed(*point)} lies outside the workspace, "
+            f"{printed(*scene.bounds[:2])} to {printed(*scene.bounds[2:])}. Move it inside."
         )
     if scene.arrangement.solid.contains(place):
-        names = [o.name for o in scene.obstacles if o.polygon.distance(place) <= GRID]
+        names = [o.name for o in scene.obstacles if o.polygon.distance(place) <= grid]
         names = names or ["the border of the workspace"]
         raise SceneError(
-            f"{where}, {what}: ({point[0]:g}, {point[1]:g}) lies inside {' and '.join(names)}. "
+            f"{where}, {what}: {printed(*point)} lies inside {' and '.join(names)}. "
             "Move it to free space."
         )
 
@@ -468,12 +447,12 @@ def scene_at(scene: Scene, time: float, without: Collection[str] = ()) -> Scene:
         at_time
         for o in scene.obstacles
         if o.name not in without
-        for at_time in _obstacle_at(scene.workspace, o, time)
+        for at_time in _obstacle_at(scene, o, time)
     ]
     return replace(scene, obstacles=tuple(obstacles))
 
 
-def _obstacle_at(room: Polygon, obstacle: Obstacle, time: float) -> list[Obstacle]:
+def _obstacle_at(scene: Scene, obstacle: Obstacle, time: float) -> list[Obstacle]:
     """An obstacle as it is at a time: in pieces where the border cuts it, or not there at all."""
     dynamics = obstacle.dynamics
     if dynamics is None:
@@ -481,8 +460,8 @@ def _obstacle_at(room: Polygon, obstacle: Obstacle, time: float) -> list[Obstacl
     if not dynamics.is_there(time):
         return []
     polygon = translate(obstacle.polygon, *dynamics.offset(time))
-    cut = obstacle.moves and not room.covers(polygon)
-    pieces = _inside(room, polygon, cut)
+    cut = obstacle.moves and not scene.workspace.covers(polygon)
+    pieces = _inside(scene.workspace, polygon, cut, scene.coordinates)
     names = [obstacle.name] if len(pieces) == 1 else _numbered(obstacle.name, len(pieces))
     return [Obstacle(name, piece) for name, piece in zip(names, pieces, strict=True)]
 

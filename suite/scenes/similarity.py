@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from shapely.geometry import LineString, Point, Polygon
 
 from suite.errors import SceneError
-from suite.geometry.tolerances import GRID, GRID_DECIMALS
+from suite.geometry.coordinates import Coordinates, coordinates_of
 from suite.scenes.dynamics import Dynamics, Removal, make_motion
 from suite.scenes.modifiers import MARK, Modifiers
 from suite.scenes.scene import Obstacle, Scene, make_scene
@@ -31,32 +31,39 @@ class Similarity:
 
     linear : (2, 2) float64, a rotation times a scale.
     centre, shift : (2,) float64, metres.
+    coordinates : of the scene that is moved, where it comes to lie.
     """
 
     linear: Points
     centre: Points
     shift: Points
+    coordinates: Coordinates
 
     def points(self, xy: Points) -> Points:
-        """Move points (n, 2), metres, onto the grid of scenes."""
-        return _on_grid((xy - self.centre) @ self.linear.T + self.centre + self.shift)
+        """Move points (n, 2), metres, onto the grid of the moved scene."""
+        moved = _moved(xy, self.linear, self.centre, self.shift)
+        return self.coordinates.snapped(moved)
 
     def vectors(self, xy: Points) -> Points:
         """Turn and scale vectors (n, 2), metres."""
-        return _on_grid(xy @ self.linear.T)
+        return np.round(xy @ self.linear.T, self.coordinates.decimals) + 0.0
 
 
-def _on_grid(xy: Points) -> Points:
-    # -0.0 and 0.0 are one place; hashes of scenes must agree
-    return np.round(xy, GRID_DECIMALS) + 0.0
+def _moved(xy: Points, linear: Points, centre: Points, shift: Points) -> Points:
+    return (xy - centre) @ linear.T + centre + shift
 
 
-def make_similarity(modifiers: Modifiers, centre: Points) -> Similarity:
-    """The map that modifiers stand for, about a centre (2,), metres."""
+def make_similarity(modifiers: Modifiers, room: Polygon) -> Similarity:
+    """The map that modifiers stand for, about the centre of a workspace, metres."""
+    xmin, ymin, xmax, ymax = room.bounds
+    centre = np.array([(xmin + xmax) / 2.0, (ymin + ymax) / 2.0])
     angle = np.radians(modifiers.turn)
     cos, sin = np.cos(angle), np.sin(angle)
     linear = modifiers.scale * np.array([[cos, -sin], [sin, cos]])
-    return Similarity(linear, centre, np.array(modifiers.shift))
+    shift = np.array(modifiers.shift)
+    corners = _moved(shapely.get_coordinates(room), linear, centre, shift)
+    (x0, y0), (x1, y1) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+    return Similarity(linear, centre, shift, coordinates_of((x0, y0, x1, y1)))
 
 
 def modified(scene: Scene, modifiers: Modifiers, *, inflate: float = 0.0) -> Scene:
@@ -96,8 +103,7 @@ def modified(scene: Scene, modifiers: Modifiers, *, inflate: float = 0.0) -> Sce
             f"{name}: a dynamic scene can't be scaled, for speeds and ranges would have to be too. "
             "Take turn, shift and twin."
         )
-    xmin, ymin, xmax, ymax = scene.bounds
-    move = make_similarity(modifiers, np.array([(xmin + xmax) / 2.0, (ymin + ymax) / 2.0]))
+    move = make_similarity(modifiers, scene.workspace)
     room, *polygons = (shapely.transform(polygon, move.points) for polygon in _with_contacts(scene))
     return make_scene(
         name,
@@ -116,31 +122,36 @@ def modified(scene: Scene, modifiers: Modifiers, *, inflate: float = 0.0) -> Sce
 def _with_contacts(scene: Scene) -> list[Polygon]:
     """Workspace and obstacles on the grid, with vertices where others or ends touch them."""
     polygons = [scene.workspace, *(o.polygon for o in scene.obstacles)]
-    drawn = [shapely.transform(polygon, _on_grid) for polygon in polygons]
+    drawn = [shapely.transform(polygon, scene.coordinates.snapped) for polygon in polygons]
     ends = [point for query in scene.queries for point in (query.start, query.goal)]
     places = np.unique(np.vstack([shapely.get_coordinates(drawn), *ends]), axis=0)
     tree = shapely.STRtree([Point(place) for place in places])
     return [
         Polygon(
-            _with_vertices(polygon, polygon.exterior, places, tree),
-            [_with_vertices(polygon, hole, places, tree) for hole in polygon.interiors],
+            _with_vertices(polygon, polygon.exterior, places, tree, scene.coordinates.grid),
+            [
+                _with_vertices(polygon, hole, places, tree, scene.coordinates.grid)
+                for hole in polygon.interiors
+            ],
         )
         for polygon in drawn
     ]
 
 
 def _with_vertices(
-    polygon: Polygon, ring: shapely.LinearRing, places: Points, tree: shapely.STRtree
+    polygon: Polygon, ring: shapely.LinearRing, places: Points, tree: shapely.STRtree, grid: float
 ) -> Points:
     """A ring of a polygon with those places as vertices that lie on its edges."""
     corners = shapely.get_coordinates(ring)
     edges = [LineString(corners[i : i + 2]) for i in range(len(corners) - 1)]
-    found = tree.query(edges, predicate="dwithin", distance=GRID).T.tolist()
+    found = tree.query(edges, predicate="dwithin", distance=grid).T.tolist()
     own = {tuple(corner) for corner in shapely.get_coordinates(polygon).tolist()}
     between: list[list[Points]] = [[] for _ in edges]
     for edge, place in found:
         # Its own would fold a ring that comes so near to itself.
-        if tuple(places[place].tolist()) not in own and _is_between(places[place], edges[edge]):
+        if tuple(places[place].tolist()) not in own and _is_between(
+            places[place], edges[edge], grid
+        ):
             between[edge].append(places[place])
     rows: list[Points] = []
     for corner, inner in zip(corners[:-1], between, strict=True):
@@ -148,9 +159,9 @@ def _with_vertices(
     return np.array(rows)
 
 
-def _is_between(place: Points, edge: LineString) -> bool:
+def _is_between(place: Points, edge: LineString, grid: float) -> bool:
     """Whether a place on an edge is none of its ends, nor so near that it would fold the ring."""
-    return all(np.hypot(*(place - end)) > GRID for end in shapely.get_coordinates(edge))
+    return all(np.hypot(*(place - end)) > grid for end in shapely.get_coordinates(edge))
 
 
 def _by_distance(origin: Points, points: Sequence[Points]) -> list[Points]:

@@ -3,8 +3,8 @@
 Robot and obstacles move in continuous time, both along straight lines between the moments in which
 either turns. Seen from the obstacle the robot then moves along a straight segment, and it is hit if
 and only if that segment enters the obstacle as it is drawn: no time is sampled. Touching is free,
-as everywhere (DE-9IM: interiors meet); what is less deep than HIT_DEPTH is rounding, so obstacles
-are shrunk by that. It knows of no planner and of no plan, only of where the robot was.
+as everywhere (DE-9IM: interiors meet); what is less deep than a hit is rounding, so obstacles are
+shrunk by that. It knows of no planner and of no plan, only of where the robot was.
 
 What exists counts, whether the robot knew of it or not. Metres, seconds.
 """
@@ -17,7 +17,6 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from suite.geometry.tolerances import HIT_DEPTH
 from suite.referee.path import INTERIORS_MEET
 from suite.scenes.dynamics import Dynamics
 from suite.scenes.scene import Obstacle, Scene
@@ -69,7 +68,8 @@ def hits(scene: Scene, trajectory: Trajectory) -> list[Hit]:
     >>> [(round(hit.time, 3), hit.obstacle) for hit in hits(scene, still)]
     [(6.0, 'door')]
     """
-    found = [_hit_by(o, trajectory) for o in scene.obstacles if o.dynamics is not None]
+    depth = scene.coordinates.hit_depth
+    found = [_hit_by(o, trajectory, depth) for o in scene.obstacles if o.dynamics is not None]
     found.append(_hit_by_what_stays(scene, trajectory))
     return sorted((hit for hit in found if hit is not None), key=lambda hit: hit.time)
 
@@ -86,7 +86,7 @@ def vanishes(dynamics: Dynamics, trajectory: Trajectory) -> float:
     return float(end)
 
 
-def _hit_by(obstacle: Obstacle, trajectory: Trajectory) -> Hit | None:
+def _hit_by(obstacle: Obstacle, trajectory: Trajectory, depth: float) -> Hit | None:
     dynamics = obstacle.dynamics or Dynamics()
     start = max(dynamics.appears, float(trajectory.times[0]))
     stop = min(vanishes(dynamics, trajectory), trajectory.end)
@@ -95,7 +95,7 @@ def _hit_by(obstacle: Obstacle, trajectory: Trajectory) -> Hit | None:
     times = _moments(dynamics, trajectory, start, stop)
     robot = trajectory.at(times)
     ways = robot - np.array([dynamics.offset(time) for time in times])
-    entry = _first_entry(_shrunk(obstacle.polygon), times, ways)
+    entry = _first_entry(_shrunk(obstacle.polygon, depth), times, ways)
     if entry is None:
         return None
     x, y = trajectory.at(entry)[0].tolist()
@@ -118,7 +118,7 @@ def _hit_by_what_stays(scene: Scene, trajectory: Trajectory) -> Hit | None:
     """First hit by the static obstacles or the frame around the workspace."""
     static = tuple(o for o in scene.obstacles if o.dynamics is None)
     stays = replace(scene, obstacles=static)
-    solid = _shrunk(stays.arrangement.solid)
+    solid = _shrunk(stays.arrangement.solid, scene.coordinates.hit_depth)
     entry = _first_entry(solid, trajectory.times, trajectory.xy)
     if entry is None:
         return None
@@ -129,9 +129,9 @@ def _hit_by_what_stays(scene: Scene, trajectory: Trajectory) -> Hit | None:
     return Hit(entry, min(near)[1], (x, y))
 
 
-def _shrunk(polygon: BaseGeometry) -> BaseGeometry:
-    """What lies deeper than HIT_DEPTH; a sliver narrower than twice that can't hit."""
-    inner: BaseGeometry = polygon.buffer(-HIT_DEPTH, join_style="mitre")
+def _shrunk(polygon: BaseGeometry, depth: float) -> BaseGeometry:
+    """What lies deeper than that; a sliver narrower than twice that can't hit."""
+    inner: BaseGeometry = polygon.buffer(-depth, join_style="mitre")
     shapely.prepare(inner)
     return inner
 

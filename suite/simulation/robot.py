@@ -10,8 +10,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from suite.geometry.coordinates import Coordinates
 from suite.geometry.kernels import first_collision, segment_enters
-from suite.geometry.tolerances import GRID, GRID_DECIMALS, HIT_DEPTH
 from suite.scenes.scene import Scene
 from suite.simulation.trajectory import Trajectory, make_trajectory
 
@@ -25,6 +25,7 @@ class Robot:
     ----------
     start : (2,) float64, metres.
     speed : metres per second.
+    coordinates : of the scene.
 
     Attributes
     ----------
@@ -33,9 +34,10 @@ class Robot:
     path : (n, 2) float64, metres, what lies ahead, from ``place`` on; None if it has no path.
     """
 
-    def __init__(self, start: NDArray[np.float64], speed: float) -> None:
+    def __init__(self, start: NDArray[np.float64], speed: float, coordinates: Coordinates) -> None:
         self.time = 0.0
-        self.place = on_grid(start)
+        self._coordinates = coordinates
+        self.place = self._on_grid(start)
         self.path: Path | None = None
         self._speed = speed
         self._rows = [(0.0, *self.place.tolist())]
@@ -54,7 +56,7 @@ class Robot:
         """The part of its path that it covers in that time: (n, 2), metres."""
         if self.path is None:
             return None
-        passed, rest = _cut(self.path, duration * self._speed)
+        passed, rest = self._cut(self.path, duration * self._speed)
         return np.vstack([*passed, rest[:1]])
 
     def drive(self, until: float) -> list[NDArray[np.float64]]:
@@ -62,7 +64,7 @@ class Robot:
         if self.path is None or self.has_arrived:
             self.wait(until)
             return []
-        passed, rest = _cut(self.path, (until - self.time) * self._speed)
+        passed, rest = self._cut(self.path, (until - self.time) * self._speed)
         places = [*passed[1:], rest[0]]
         for place in places:
             distance = float(np.hypot(*(place - self.place)))
@@ -81,11 +83,11 @@ class Robot:
     def settle(self, scene: Scene) -> bool:
         """Stand on the grid, in free space of a static scene; whether there is any within reach.
 
-        Reach is HIT_DEPTH: what is deeper in an obstacle was hit by it. Of the places around, one
-        from which the path ahead stays as free as it was.
+        Reach is the depth of a hit: what is deeper in an obstacle was hit by it. Of the places
+        around, one from which the path ahead stays as free as it was.
         """
         fallback = None
-        for place in _places_around(self.place):
+        for place in self._places_around():
             x, y = place.tolist()
             if segment_enters(x, y, x, y, scene.arrays):
                 continue
@@ -114,38 +116,34 @@ class Robot:
         self.time, self.place = time, place
         self._rows.append((time, *place.tolist()))
 
+    def _on_grid(self, place: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The same place on the grid of the obstacles, read-only."""
+        snapped = self._coordinates.snapped(place)
+        snapped.setflags(write=False)
+        return snapped
 
-def on_grid(place: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The same place on the grid of the obstacles, read-only."""
-    rounded = np.round(place, GRID_DECIMALS)
-    rounded += 0.0  # -0.0 and 0.0 are one place
-    rounded.setflags(write=False)
-    return rounded
+    def _places_around(self) -> Iterator[NDArray[np.float64]]:
+        yield self._on_grid(self.place)
+        step = self._coordinates.grid
+        while step < 4.0 * self._coordinates.hit_depth:
+            for dx in (0, 1, -1):
+                for dy in (0, 1, -1):
+                    if dx or dy:
+                        yield self._on_grid(self.place + np.array([dx, dy]) * step)
+            step *= 4.0
 
+    def _cut(self, path: Path, reach: float) -> tuple[list[NDArray[np.float64]], Path]:
+        """The waypoints passed within a distance, and the path from the place where that ends.
 
-def _places_around(place: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
-    yield on_grid(place)
-    step = GRID
-    while step < 4.0 * HIT_DEPTH:
-        for dx in (0, 1, -1):
-            for dy in (0, 1, -1):
-                if dx or dy:
-                    yield on_grid(place + np.array([dx, dy]) * step)
-        step *= 4.0
-
-
-def _cut(path: Path, reach: float) -> tuple[list[NDArray[np.float64]], Path]:
-    """The waypoints passed within a distance, and the path from the place where that ends.
-
-    What is left begins at that place; at the end of the path, it is its last point alone.
-    """
-    passed = [path[0]]
-    for i in range(len(path) - 1):
-        step = path[i + 1] - path[i]
-        length = float(np.hypot(*step))
-        if length > reach:
-            place = on_grid(path[i] + step * (reach / length))
-            return passed, np.vstack([place, path[i + 1 :]])
-        reach -= length
-        passed.append(path[i + 1])
-    return passed[:-1], path[-1:]
+        What is left begins at that place; at the end of the path, it is its last point alone.
+        """
+        passed = [path[0]]
+        for i in range(len(path) - 1):
+            step = path[i + 1] - path[i]
+            length = float(np.hypot(*step))
+            if length > reach:
+                place = self._on_grid(path[i] + step * (reach / length))
+                return passed, np.vstack([place, path[i + 1 :]])
+            reach -= length
+            passed.append(path[i + 1])
+        return passed[:-1], path[-1:]

@@ -216,7 +216,7 @@ class _Run:
         budget: Budget,
     ) -> None:
         self.world = World(scene, settings)
-        self.robot = Robot(query.start, settings.speed)
+        self.robot = Robot(query.start, settings.speed, scene.coordinates)
         self.replans: list[Replan] = []
         self.courses: list[Course] = []
         self._query = query

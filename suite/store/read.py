@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from suite.errors import StoreError
 from suite.planner import Budget, Snapshot
 from suite.store.connection import explained, open_for_reading
+from suite.store.gap import gaps
 from suite.store.record import Cell, World
 from suite.store.schema import columns_now
 
@@ -62,7 +63,7 @@ def read_runs(path: Path) -> pd.DataFrame:
     DataFrame
         The columns are the fields of :class:`suite.store.record.Cell` and
         :class:`suite.store.record.RunRecord`; settings and details are JSON text. Only simulated
-        runs have a ``world``.
+        runs have a ``world``. The gap is that of cost and optimum, see :mod:`suite.store.gap`.
     """
     frame = _read(path, "SELECT * FROM runs ORDER BY position, rowid")
     # An older kbga-bench wrote without some of them, a younger one added those at the end.
@@ -70,7 +71,9 @@ def read_runs(path: Path) -> pd.DataFrame:
     frame = frame.reindex(columns=list(columns))
     # A column without a single value would arrive as objects.
     kinds = {name: _KINDS[kind] for name, kind in columns.items() if kind in _KINDS}
-    return frame.astype(kinds)
+    frame = frame.astype(kinds)
+    # What a row holds is another's arithmetic, and can't be infinite.
+    return frame.assign(gap=gaps(frame["cost"], frame["optimum"]))
 
 
 def read_events(path: Path) -> pd.DataFrame:

@@ -135,7 +135,8 @@ def test_time_that_is_over_ends_a_preparation_that_would_take_minutes():
     budget = Budget(wall_s=0.5)
     made = ExtremityPlanner().plan(scene, scene.query(), budget, rng, recorder)
     assert made.status is PlanStatus.EXHAUSTED
-    assert recorder.wall_s() < 30.0
+    # Of its own time: a busy machine gives it less in a second.
+    assert recorder.cpu_s() < 30.0
 
 
 def test_a_pinch_in_another_piece_of_free_space_refuses_nothing():

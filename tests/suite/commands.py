@@ -17,7 +17,7 @@ class Done:
 
 def in_own_process(*arguments, code=0, env=None):
     done = subprocess.run(
-        [*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=120, env=env
+        [*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=600, env=env
     )
     assert done.returncode == code, done.stderr
     return Done(done.returncode, done.stdout, done.stderr)

@@ -18,6 +18,9 @@ from tests.suite.commands import COMMAND, hear_interrupts, in_own_process
 SEEDS = 4
 SAMPLE = 3
 KILLS = 100
+PATIENCE_S = 300.0
+"""More than anybody needs, however busy the machine is."""
+
 LATEST_S = 4.0
 """The first kills come while the server still warms up, the last ones after the end."""
 
@@ -34,10 +37,10 @@ moments = pytest.mark.parametrize(
 )
 
 
-def start(matrix, store, mark):
+def start(matrix, store, mark, jobs=2):
     """The command running a matrix, in a process group of its own."""
     return subprocess.Popen(
-        [*COMMAND, "run", str(matrix), "--store", str(store), "--jobs", "2"],
+        [*COMMAND, "run", str(matrix), "--store", str(store), "--jobs", str(jobs)],
         env={**os.environ, "KBGA_TEST_MARK": mark},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -48,9 +51,12 @@ def start(matrix, store, mark):
 
 
 def started(matrix, store, mark):
-    """The command running a matrix, once it has written 3 rows."""
-    run = start(matrix, store, mark)
-    deadline = time.monotonic() + 60
+    """The command running a matrix, once it has written 3 rows.
+
+    All runs are begun at once: those that never end keep nobody from ending.
+    """
+    run = start(matrix, store, mark, jobs=2 * SEEDS)
+    deadline = time.monotonic() + PATIENCE_S
     while rows_of(store) < 3 and time.monotonic() < deadline:
         time.sleep(0.02)
     return run
@@ -75,8 +81,8 @@ def marked(mark):
     return found
 
 
-def gone(mark, patience_s=5.0):
-    deadline = time.monotonic() + patience_s
+def gone(mark):
+    deadline = time.monotonic() + PATIENCE_S
     while marked(mark) and time.monotonic() < deadline:
         time.sleep(0.05)
     return not marked(mark)
@@ -99,19 +105,20 @@ def check_resumed(matrix, store, before, paths):
     check_integrity(store)
 
 
-@pytest.mark.parametrize("sleeper", ["sleeper", "hangs-in-c"])
+@pytest.mark.parametrize("endless", ["hangs", "hangs-in-c"])
 def test_kill_9_in_the_middle_keeps_what_is_done_and_leaves_no_orphan(
-    matrix_file, tmp_path, sleeper
+    matrix_file, tmp_path, endless
 ):
     store, mark = tmp_path / "s.db", uuid.uuid4().hex
-    wanted = matrix_file("wanderer", sleeper, seeds=SEEDS)
-    run = started(wanted, store, mark)
+    run = started(matrix_file("wanderer", endless, seeds=SEEDS), store, mark)
     assert marked(mark)
     run.kill()
     run.communicate()
     assert gone(mark)
     before = read_runs(store).set_index("key")
-    assert 3 <= len(before) < 2 * SEEDS
+    assert 3 <= len(before) <= SEEDS
+    # Now they end: a limit is no part of what a row is.
+    wanted = matrix_file("wanderer", endless, seeds=SEEDS, limit_s=1.0)
     check_resumed(wanted, store, before, read_paths(store))
 
 
@@ -120,7 +127,7 @@ def test_kill_9_at_any_moment_loses_no_finished_row_and_doubles_none(
     matrix_file, tmp_path, number, planner
 ):
     store, mark = tmp_path / "s.db", uuid.uuid4().hex
-    wanted = matrix_file("wanderer", planner, seeds=SEEDS)
+    wanted = matrix_file("wanderer", planner, seeds=SEEDS, limit_s=1.0)
     run = start(wanted, store, mark)
     time.sleep(LATEST_S * np.random.default_rng(number).random())
     run.kill()
@@ -138,10 +145,10 @@ def test_ctrl_c_stops_tidily_and_says_how_to_go_on(matrix_file, tmp_path):
     store, mark = tmp_path / "s.db", uuid.uuid4().hex
     run = started(matrix_file("wanderer", "hangs", seeds=SEEDS), store, mark)
     os.killpg(run.pid, signal.SIGINT)
-    _, stderr = run.communicate(timeout=10)
+    _, stderr = run.communicate(timeout=PATIENCE_S)
     assert run.returncode == 130
     assert "to go on, give the same command again" in stderr
     assert "Traceback" not in stderr
     assert gone(mark)
-    assert 3 <= len(read_runs(store)) < 2 * SEEDS
-    assert set(read_runs(store)["status"]) <= {"solved", "timed_out"}
+    assert 3 <= len(read_runs(store)) <= SEEDS
+    assert set(read_runs(store)["status"]) == {"solved"}

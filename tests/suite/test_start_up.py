@@ -1,6 +1,6 @@
 """What the command loads before it answers, and what that costs.
 
-Processor seconds, the least of three, against twice what they shall take.
+Processor seconds, the least of three, against those of the libraries that print the answer.
 """
 
 import os
@@ -21,12 +21,21 @@ def cpu_s(*arguments: str) -> float:
     return used.ru_utime + used.ru_stime
 
 
+PRINTERS = "import typer, rich.markdown, rich.table"
+
+
+@pytest.fixture(scope="module")
+def printers_s():
+    return min(cpu_s(PRINTERS) for _ in range(3))
+
+
 @pytest.mark.parametrize(
-    ("limit_s", "arguments"),
-    [(0.5, ("--help",)), (1.0, ("run", "--help")), (1.0, ("list", "matrices"))],
+    ("most", "arguments"),
+    # Found: 1.5, 1.8 and 1.7. With numpy it would be 2.2 at once, with pandas 3.5.
+    [(2.0, ("--help",)), (2.5, ("run", "--help")), (2.5, ("list", "matrices"))],
 )
-def test_the_command_answers_soon(limit_s, arguments):
-    assert min(cpu_s(COMMAND, *arguments) for _ in range(3)) < limit_s
+def test_the_command_answers_soon(printers_s, most, arguments):
+    assert min(cpu_s(COMMAND, *arguments) for _ in range(3)) < most * printers_s
 
 
 def loaded_by(code: str, *arguments: str) -> set[str]:

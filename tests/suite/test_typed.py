@@ -32,6 +32,7 @@ class Cart(Struct, frozen=True, forbid_unknown_fields=True):
     wheels: Annotated[list[Wheel | str], Meta(min_length=1, description="wheels, one at least")]
     extras: dict[str, Any] = {}
     horses: int | None = None
+    size: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,7 @@ def test_what_fits_is_converted():
         ({"wheels": ["a"], "horses": True}, ("horses",), "horses is True. Give a whole number."),
         ({"wheels": [3]}, ("wheels", 0), "wheels is 3. Give a table or a string."),
         ({"wheels": ["a", {}]}, ("wheels", 1), "'radius' is missing: give a number."),
+        ({"wheels": ["a"], "size": [1, "2"]}, ("size", 1), "size is '2'. Give a number."),
         (
             {"wheels": [{"radius": 1, "grip": 2}]},
             ("wheels", 0, "grip"),

@@ -20,6 +20,7 @@ import pandas as pd
 from suite.errors import StoreError, writing
 from suite.planner import PlanStatus
 from suite.report.export.files import made_folder
+from suite.report.optima import check_optima
 from suite.report.rows import is_simulated, newest
 from suite.store.read import read_events, read_runs, read_sessions
 
@@ -79,6 +80,7 @@ def write_ompl_logs(store: Path, directory: Path) -> list[Path]:
     runs = runs[~is_simulated(runs)]
     if runs.empty:
         raise StoreError(f"{store}: it holds no runs that a log could hold.")
+    check_optima(runs)
     events = dict(tuple(read_events(store).groupby("key")))
     sessions = {session["id"]: session for session in read_sessions(store)}
     folder = made_folder(directory)

@@ -59,11 +59,11 @@ def comparison_figures(steps: Steps) -> dict[str, Figure]:
         None without an accepted path in a scene with an optimum, or with too many planners.
     """
     planners = steps.runs["variant"].nunique()
-    if planners > PLANNERS_AT_MOST or np.isnan(steps.optimum[steps.run]).all():
+    if planners > PLANNERS_AT_MOST or not (steps.optimum[steps.run] > 0.0).any():
         return {}
     figures = {"gap-boxes": plot_boxes(steps)}
     timed = on_clock(steps, WALL)
-    if np.isfinite(timed.optimum[timed.run]).any():
+    if (timed.optimum[timed.run] > 0.0).any():
         figures["gap-time"] = plot_scatter(steps)
     return figures
 
@@ -77,7 +77,7 @@ def plot_boxes(steps: Steps) -> Figure:
         With an accepted path in a scene with an optimum.
     """
     gap = 100.0 * final_gaps(steps)
-    groups = groups_of(steps, ~np.isnan(steps.optimum))
+    groups = groups_of(steps, steps.optimum > 0.0)
     scenes = list(dict.fromkeys(scene for scene, _ in groups))
     planners = style.numbered(steps.runs["variant"])
     panels = scene_panels(scenes)
@@ -138,7 +138,7 @@ def plot_scatter(steps: Steps) -> Figure:
     runs = steps.runs
     gap = 100.0 * final_gaps(steps)
     time = 1e3 * runs["time_to_best_s"].fillna(runs["wall_s"]).to_numpy()
-    groups = groups_of(steps, ~np.isnan(steps.optimum))
+    groups = groups_of(steps, steps.optimum > 0.0)
     scenes = list(dict.fromkeys(scene for scene, _ in groups))
     panels = scene_panels(scenes)
     first = next(iter(panels.axes.values()))

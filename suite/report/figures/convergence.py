@@ -49,7 +49,7 @@ def convergence_figures(steps: Steps) -> dict[str, Figure]:
     """
     if steps.runs["variant"].nunique() > PLANNERS_AT_MOST:
         return {}
-    measured = ~np.isnan(steps.optimum[steps.run])
+    measured = steps.optimum[steps.run] > 0.0
     return {
         f"convergence-{name}": plot_convergence(steps, clock)
         for clock, (name, *_) in CLOCKS.items()
@@ -103,7 +103,8 @@ def counted_groups(steps: Steps, clock: str) -> dict[tuple[str, str], NDArray[np
     counted = ~np.isnan(steps.clocks[clock])
     variants = steps.runs["variant"].to_numpy()
     silent = set(variants[steps.run[~counted]]) - set(variants[steps.run[counted]])
-    wanted = ~np.isnan(steps.optimum) & ~np.isin(variants, list(silent))
+    # Where start and goal are one place there is no gap that an axis could show.
+    wanted = (steps.optimum > 0.0) & ~np.isin(variants, list(silent))
     wanted[steps.run[~counted]] = False
     if clock == WALL:
         wanted &= by_the_clock(steps.runs)

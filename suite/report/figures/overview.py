@@ -96,7 +96,7 @@ def plot_overview(scores: pd.DataFrame, left_out: str = "") -> Figure:
 def _gaps(scores: pd.DataFrame) -> _Map:
     gap, success = scores["gap median (%)"], scores["success (%)"]
     texts = [_gap_text(g, s) for g, s in zip(gap, success, strict=True)]
-    return _map("median gap (%)", scores, gap, texts, style.LEAST_GAP)
+    return _map("median gap (%)", scores, gap.where(np.isfinite(gap)), texts, style.LEAST_GAP)
 
 
 def _times(scores: pd.DataFrame) -> _Map:

@@ -74,7 +74,7 @@ def convergence_chart(steps: Steps, planners: dict[str, int]) -> Chart | None:
     layouts = {}
     for clock, (_, label, unit, shift) in CLOCKS.items():
         groups = counted_groups(drawn, clock)
-        shown = drawn.clocks[clock][~np.isnan(drawn.optimum[drawn.run])] + shift
+        shown = drawn.clocks[clock][drawn.optimum[drawn.run] > 0.0] + shift
         if not groups or not (np.isfinite(shown) & (shown > 0.0)).any():
             continue
         grid = grid_over(shown)

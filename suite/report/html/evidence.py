@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from suite.planner import Snapshot
 from suite.report.all_tables import read_tables
 from suite.report.figures.style import numbered
+from suite.report.optima import check_optima
 from suite.report.rows import is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import fair
@@ -75,10 +76,11 @@ def read_evidence(store: Path, reference: str | None = None) -> Evidence:
     StoreError
         If it can't be read.
     KbgaBenchError
-        If no run is of the reference.
+        If no run is of the reference, or a path is shorter than the shortest.
     """
     runs, events = read_runs(store), read_events(store)
     current = newest(runs)
+    check_optima(current)
     return Evidence(
         store=store,
         runs=runs,

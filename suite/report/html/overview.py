@@ -57,7 +57,8 @@ def _gaps(found: pd.DataFrame) -> Sheet:
 
 
 def _number(row: Mapping[Any, Any]) -> str:
-    return str(row["gap mean (%)"])
+    gap = row["gap mean (%)"]
+    return str(gap) if np.isfinite(gap) else ""
 
 
 def _by_status(runs: pd.DataFrame) -> pd.DataFrame:

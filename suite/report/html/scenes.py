@@ -27,7 +27,7 @@ class BestPath:
 
     look, width : of its line; the width also multiplies the dashes.
     d : the line; None without a path.
-    cost, gap : metres and a share; None if not known.
+    cost, gap : metres and a share; None if not known, or not finite.
     solved, runs : how many runs found a path, of how many.
     """
 
@@ -126,7 +126,7 @@ def _best_paths(runs: pd.DataFrame, drawing: Drawing | None, evidence: Evidence)
                 float(width),
                 None if path is None or drawing is None else drawing.outline(path),
                 None if best is None else float(best["cost"]),
-                None if best is None or pd.isna(best["gap"]) else float(best["gap"]),
+                None if best is None or not np.isfinite(best["gap"]) else float(best["gap"]),
                 len(feasible(group)),
                 len(group),
             )

@@ -158,7 +158,7 @@ def _pair_of_means(scene: str, name: str, quantity: str) -> tuple[Reported, Repo
 
 
 def _cost(pair: Pair) -> Contrast:
-    scale = float(pair.runs[0]["optimum"].max()) / 100.0
+    scale = (float(pair.runs[0]["optimum"].max()) or np.nan) / 100.0
     papers = best_reported(pair.scene) or np.nan
     paper = tuple(_paper_sample(figure, papers / 100.0) for figure in pair.figures)
     found = [_numbers(feasible(runs)["cost"]) / scale for runs in pair.runs]

@@ -367,7 +367,8 @@ def _is_calibrated(figure: Reported) -> bool:
 
 def _scale(figure: Reported, ours: pd.DataFrame) -> float:
     """What ours are divided by: costs are compared in optima."""
-    return float(ours["optimum"].max()) if figure.quantity == "cost" else 1.0
+    # Start and goal in one place can't be compared with, either.
+    return (float(ours["optimum"].max()) or np.nan) if figure.quantity == "cost" else 1.0
 
 
 def _paper_scale(figure: Reported) -> float:

@@ -15,12 +15,10 @@ from numpy.typing import NDArray
 from suite.report.rows import feasible, places
 from suite.report.statistics.clock import WALL, by_the_clock
 from suite.report.statistics.inference import Array
+from suite.store.gap import ROUNDING, gaps
 
 CLOCKS = {"wall_s": "wall_s", "cpu_s": "cpu_s", "generation": "generations", "checks": "checks"}
 """Clocks of the events, and the columns of the runs that hold what they show at the end."""
-
-ROUNDING = 1e-9
-"""Relative: costs that differ by less are equal, as sums of the same lengths in another order."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -173,24 +171,6 @@ def first_within(steps: Steps, clock: str, gap: float) -> Array:
     shown = np.where(np.isnan(steps.optimum), np.nan, np.inf)
     shown[run[first]] = steps.clocks[clock][within[first]]
     return shown
-
-
-def gaps(cost: Array, optimum: Array) -> Array:
-    """Costs over optima, less 1; what is rounding is 0.
-
-    Parameters
-    ----------
-    cost, optimum : (r,) float64, metres
-
-    Returns
-    -------
-    (r,) float64
-    """
-    # Start and goal may be one place: the optimum is 0, and so is the gap of an equal cost.
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where((optimum == 0.0) & (cost == 0.0), 1.0, cost / optimum)
-    gap = ratio - 1.0
-    return np.where(np.abs(gap) < ROUNDING, 0.0, gap)
 
 
 def final_gaps(steps: Steps) -> Array:

@@ -124,8 +124,9 @@ def _verdict(drawn: pd.DataFrame, moved: pd.DataFrame) -> str:
         return f"{DIFFERS}: runs with a path"
     if 0 in (found, found_moved):
         return f"{NOT_COMPARABLE}: no path"
-    gap = _gap(drawn)
-    return HOLDS if abs(_gap(moved) - gap) <= _allowed(gap) else f"{DIFFERS}: gap"
+    gap, gap_moved = _gap(drawn), _gap(moved)
+    same = gap == gap_moved or abs(gap_moved - gap) <= _allowed(gap)  # both may be infinite
+    return HOLDS if same else f"{DIFFERS}: gap"
 
 
 def alignment_tables(runs: pd.DataFrame) -> list[Table]:

@@ -26,7 +26,7 @@ from suite.report.statistics.inference import (
     nemenyi,
     signed_rank,
 )
-from suite.report.table import Kind, Table
+from suite.report.table import INFINITE, Kind, Table
 from suite.report.tables.targets import medians
 from suite.report.words import counted
 
@@ -117,13 +117,14 @@ def scene_scores(steps: Steps) -> pd.DataFrame:
     """
     runs = steps.runs
     gap = final_gaps(steps)
+    found = np.isin(np.arange(len(runs)), steps.run)
     time = first_within(steps, "wall_s", TARGET)
     measured = pd.DataFrame(
         {
             "place": runs["place"],
             "variant": runs["variant"],
             "success (%)": 100.0 * runs["status"].isin(PlanStatus.SUCCESSES),
-            "gap median (%)": 100.0 * np.where(np.isfinite(gap), gap, np.nan),
+            "gap median (%)": 100.0 * np.where(found, gap, np.nan),
             "within 1 % (%)": 100.0 * np.where(np.isnan(time), np.nan, np.isfinite(time)),
         }
     )
@@ -219,8 +220,9 @@ def ranking_tables(steps: Steps, reference: str | None = None) -> list[Table]:
     detailed = scores.assign(**{r.name: _of_rows(scores, r.ranks) for r in found})
     return [
         Table("ranking", title, frame, note, kinds=kinds),
-        Table("ranking-rows", "Ranks on each scene", detailed, NOTE, "never", detail=True),
-    ]
+        Table("ranking-rows", "Ranks on each scene", detailed, NOTE, "never", detail=True,
+              infinite_in={"gap median (%)": INFINITE}),
+    ]  # fmt: skip
 
 
 def _columns(ranking: Ranking, one: str) -> pd.DataFrame:

@@ -10,11 +10,13 @@ from typing import Any
 import pandas as pd
 
 from suite.paper.reported import KBGA, find
+from suite.report.optima import check_replans
 from suite.report.rows import NAME, feasible
 from suite.report.statistics.clock import by_the_clock, untimed_note
 from suite.report.table import Kind, Table
 from suite.report.tables.summary import spread
 from suite.report.words import joined
+from suite.store.gap import gaps
 
 SIMULATION_NOTE = (
     "unhurt: runs in which the robot came to the goal and no obstacle ever hit it, judged in "
@@ -70,6 +72,7 @@ def simulated_tables(
     """
     if runs.empty:
         return []
+    check_replans(replans)
     fared = runs.merge(simulations, on="key", how="left", validate="one_to_one")
     asked = runs[["key", "world_settings", "contended", *NAME]].merge(replans, on="key")
     note = joined(REPLANNING_NOTE, untimed_note(runs))
@@ -131,7 +134,7 @@ def how_they_answered(replans: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for name, group in replans.groupby(NAME, sort=False):
         latency = 1e3 * group.loc[by_the_clock(group), "latency_s"].dropna()
-        gaps = 100.0 * (group["cost"] / group["optimum"] - 1.0).dropna()
+        above = 100.0 * pd.Series(gaps(group["cost"], group["optimum"])).dropna()
         missed = group["optimum"].notna() & group["cost"].isna() & group["latency_s"].notna()
         rows.append(
             {
@@ -141,8 +144,8 @@ def how_they_answered(replans: pd.DataFrame) -> pd.DataFrame:
                 "latency 95 % (ms)": float(latency.quantile(0.95)),
                 "latency worst (ms)": float(latency.max()),
                 "gen per replan": float(group["generations"].astype("float64").mean()),
-                "gap median (%)": float(gaps.median()),
-                "gap worst (%)": float(gaps.max()),
+                "gap median (%)": float(above.median()),
+                "gap worst (%)": float(above.max()),
                 "no path": int(missed.sum()),
             }
         )

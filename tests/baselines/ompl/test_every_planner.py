@@ -107,7 +107,7 @@ def test_ends_inside_an_obstacle_are_infeasible_and_raise_nothing(planner, start
 
 
 @each
-@pytest.mark.parametrize("budget", [Budget(checks=10_000), Budget(wall_s=0.3)], ids=str)
+@pytest.mark.parametrize("budget", [Budget(checks=10_000), Budget(cpu_s=0.3)], ids=str)
 def test_improvements_fall_and_the_last_is_the_path(planner, budget):
     recorder = Recorder()
     made = run(planner, SCENES["one box"], budget, recorder=recorder)
@@ -138,10 +138,10 @@ def test_a_budget_of_checks_is_never_exceeded(planner, checks):
 
 @each
 def test_a_budget_of_wall_time_is_kept_within_reason(planner):
-    began = time.perf_counter()
+    began = time.process_time()
     run(planner, load_scene("maze"), Budget(wall_s=0.2))
-    # Generous: what is refused here is a planner that does not stop, not a slow machine.
-    assert time.perf_counter() - began < 5.0
+    # What is refused here is a planner that does not stop, and not a machine that gives it little.
+    assert time.process_time() - began < 5.0
 
 
 @each
@@ -150,9 +150,8 @@ def test_the_clock_of_the_run_is_the_recorders(planner):
         def wall_s(self) -> float:
             return 1.0
 
-    began = time.perf_counter()
-    run(planner, SCENES["one box"], Budget(wall_s=0.9), recorder=Late())
-    assert time.perf_counter() - began < 0.5
+    made = run(planner, load_scene("maze"), Budget(wall_s=0.9), recorder=Late())
+    assert made.checks < 2000
 
 
 @each
@@ -213,34 +212,52 @@ def test_another_seed_gives_another_path(planner):
 
 
 PROGRAM = """
-import sys, numpy as np
+import os, sys, numpy as np
 from suite.plugins.discovery import load_planner
 from suite.planner import Budget, Recorder
 from suite.scenes.catalogue import load_scene
 scene = load_scene("obstacles_20")
-planner = load_planner(sys.argv[1])()
-if sys.argv[2] == "after another run":
+when, *names = sys.argv[1:]
+planners = {name: load_planner(name) for name in names}
+for name in names:
+    if os.fork() == 0:
+        break
+    if os.wait()[1] != 0:
+        sys.exit(1)
+else:
+    sys.exit(0)
+planner = planners[name]()
+if when == "after another run":
     planner.warm_up()
 recorder = Recorder()
 rng = np.random.default_rng(7)
 plan = planner.plan(scene, scene.query(), Budget(checks=5000), rng, recorder)
-print(plan.path.tobytes().hex(), [(i.cost, i.checks) for i in recorder.improvements])
+print(name, plan.path.tobytes().hex(), [(i.cost, i.checks) for i in recorder.improvements])
 """
 
 
+@pytest.fixture(scope="module")
+def told():
+    """What each planner's run gave in a process of its own that began with it, and in one that had
+    another run before: copies of two processes, which have different addresses.
+    """
+
+    def ask(when):
+        done = subprocess.run(
+            [sys.executable, "-c", PROGRAM, when, *(planner.name for planner in PLANNERS)],
+            capture_output=True, text=True, check=True, cwd=Path(__file__).parents[3],
+        )  # fmt: skip
+        assert done.stderr == ""  # OMPL's log and nanobind's reports of leaks stay away
+        return dict(line.split(" ", 1) for line in done.stdout.splitlines())
+
+    return ask("first of all"), ask("after another run")
+
+
 @each
-def test_same_seed_and_checks_give_the_same_path_in_another_process(planner):
-    root = Path(__file__).parents[3]
-    printed = [
-        subprocess.run(
-            [sys.executable, "-c", PROGRAM, planner.name, when],
-            capture_output=True, text=True, check=True, cwd=root,
-        )
-        for when in ("first of all", "after another run")
-    ]  # fmt: skip
-    assert printed[0].stdout == printed[1].stdout
-    assert len(printed[0].stdout) > 100
-    assert printed[0].stderr == ""  # OMPL's log and nanobind's reports of leaks stay away
+def test_same_seed_and_checks_give_the_same_path_in_another_process(planner, told):
+    first, second = (each_of[planner.name] for each_of in told)
+    assert first == second
+    assert len(first) > 100
 
 
 @each

@@ -300,3 +300,19 @@ def test_a_run_of_so_much_cpu_time_has_much_more_wall_time_before_it_is_killed()
     assert limits.plan_s(Budget(cpu_s=2.0)) == limits.cpu_stretch * 2.0 + 10.0
     assert limits.plan_s(Budget(cpu_s=2.0)) > 4 * limits.plan_s(Budget(wall_s=2.0)) - 10.0
     assert limits.plan_s(Budget(wall_s=1.0, cpu_s=9.0)) == limits.plan_s(Budget(wall_s=1.0))
+
+
+@pytest.mark.parametrize("text", ["seeds = " + "1" * 5000, "seeds = " + "[" * 50_000])
+def test_a_number_too_long_and_lists_too_deep_are_refused(written, text):
+    assert "can't be read as TOML" in refused(written(text))
+
+
+def test_a_byte_order_mark_is_skipped(tmp_path):
+    file = tmp_path / "walls.toml"
+    file.write_bytes(b"\xef\xbb\xbf" + GOOD.encode())
+    assert load_matrix(file).name == "walls"
+
+
+@pytest.mark.parametrize("seeds", [10**7, 2**63, [2**63]])
+def test_seeds_that_no_memory_or_store_holds_are_refused(written, seeds):
+    assert "seeds is" in refused(written(GOOD.replace("seeds = 3", f"seeds = {seeds}")))

@@ -22,7 +22,7 @@ from pathlib import Path
 with open_store(Path(sys.argv[2])) as store:
     run_matrix(load_matrix(sys.argv[1]), store, jobs=int(sys.argv[3]))
 """
-PATIENCE_S = 30.0
+PATIENCE_S = 300.0
 
 
 @pytest.fixture
@@ -114,11 +114,9 @@ def test_a_harness_that_is_killed_while_it_warms_up_leaves_no_process(
 def test_ctrl_c_ends_a_harness_that_is_still_warming_up(harness, marked, send):
     process = harness("hangs-in-warm-up", jobs=2)
     wait_until(lambda: sessions(marked) == 2)
-    began = time.monotonic()
     send(process.pid, signal.SIGINT)
+    # Warming up takes an hour here.
     _, said = process.communicate(timeout=PATIENCE_S)
-    # Warming up takes a minute here.
-    assert time.monotonic() - began < PATIENCE_S
     assert said.decode().strip().splitlines()[-1] == "KeyboardInterrupt"
     assert said.decode().count("Traceback") == 1
     wait_until(lambda: not alive(marked))

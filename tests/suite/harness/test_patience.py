@@ -19,9 +19,9 @@ def loads(*values):
 
 
 def test_it_waits_until_others_leave_a_core(monkeypatch):
-    patience = Patience(10.0, loads(64.0, 64.0, 0.0))
+    patience = Patience(600.0, loads(64.0, 64.0, 0.0))
     with patience.free_core(wanted=True):
-        assert 2 * module.WINDOW_S <= patience.waited_s < 5.0
+        assert 2 * module.WINDOW_S <= patience.waited_s < 600.0
 
 
 def test_an_idle_machine_costs_nothing():
@@ -37,14 +37,19 @@ def test_who_wants_no_core_does_not_wait():
 
 
 def test_it_waits_no_longer_in_all_than_it_is_told():
-    patience = Patience(0.5, loads(64.0))
+    asked = []
+
+    def others():
+        asked.append(64.0)
+        return 64.0
+
+    patience = Patience(0.5, others)
+    with patience.free_core(wanted=True):
+        assert patience.waited_s >= 0.5
+    asked.clear()
     for _ in range(3):
         with patience.free_core(wanted=True):
-            pass
-    assert 0.5 <= patience.waited_s < 2.0
-    began = time.monotonic()
-    with patience.free_core(wanted=True):
-        assert time.monotonic() - began < 0.1
+            assert asked == [], "who asks waits"
 
 
 def test_runs_of_our_own_take_cores_too():
@@ -57,7 +62,7 @@ def test_runs_of_our_own_take_cores_too():
 
 
 def test_giving_up_lets_all_go_on_at_once():
-    patience = Patience(60.0, loads(64.0))
+    patience = Patience(3600.0, loads(64.0))
     ends = []
 
     def run():
@@ -69,7 +74,7 @@ def test_giving_up_lets_all_go_on_at_once():
         thread.start()
     patience.give_up()
     for thread in threads:
-        thread.join(5.0)
+        thread.join(300.0)
     assert len(ends) == 3
 
 

@@ -14,9 +14,15 @@ from tests.suite.harness.records import make_cell
 @pytest.fixture
 def matrix(hostile, wall_file, tmp_path):
     def make(*planners, seeds=2):
+        """Those that never end have half a second, the others all the time that they need."""
         file = tmp_path / "matrix.toml"
-        text = f'scenes = ["{wall_file}"]\nseeds = {seeds}\n[limits]\nwall_s = 1.0\n'
-        text += "".join(f'[[planner]]\nplanner = "{planner}"\n' for planner in planners)
+        limits = "wall_s = 600.0\nfactor = 1.0\ngrace_s = 0.4\n"
+        text = f'scenes = ["{wall_file}"]\nseeds = {seeds}\n[limits]\n{limits}'
+        text += "".join(
+            f'[[planner]]\nplanner = "{planner}"\n'
+            + "budget = { wall_s = 0.1 }\n" * (planner == "hangs")
+            for planner in planners
+        )
         file.write_text(text)
         return load_matrix(file)
 

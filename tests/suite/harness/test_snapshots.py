@@ -23,7 +23,7 @@ budget = {{ {budget} }}
 """
 
 
-@pytest.fixture(scope="module", params=["generations = 12", "wall_s = 0.02"])
+@pytest.fixture(scope="module", params=["generations = 12", "cpu_s = 0.02"])
 def ran(request, tmp_path_factory):
     """A store after its matrix was run and populations were kept twice, and what that said."""
     folder = tmp_path_factory.mktemp("snapshots")

@@ -13,6 +13,8 @@ from suite.store.read import read_events, read_runs
 from suite.store.write import open_store
 from tests.suite.harness.records import make_cell, make_record
 
+OPTIMUM = 100.0
+
 
 @pytest.fixture
 def runs_of(tmp_path):
@@ -30,7 +32,7 @@ def runs_of(tmp_path):
 
 def solved(cost, *, seed=0, scene="zigzag", variant="kbga", **changes):
     cell = make_cell(scene=scene, variant=variant, seed=seed)
-    return make_record(cell, cost=cost, gap=cost / 100.0 - 1.0, **changes)
+    return make_record(cell, cost=cost, optimum=OPTIMUM, gap=cost / OPTIMUM - 1.0, **changes)
 
 
 def exhausted(*, seed=0, scene="zigzag", variant="plain-ga", **changes):
@@ -38,6 +40,7 @@ def exhausted(*, seed=0, scene="zigzag", variant="plain-ga", **changes):
     return make_record(
         make_cell(scene=scene, variant=variant, seed=seed),
         status=PlanStatus.EXHAUSTED,
+        optimum=OPTIMUM,
         **nothing | changes,
     )
 
@@ -251,7 +254,7 @@ def test_without_events_there_is_no_ranking_and_there_are_no_statistics(runs_of)
 
 def test_settings_of_our_own_are_no_answer_to_the_paper(runs_of):
     population = '{"population_size": 50}'
-    runs = runs_of(solved(10.0, scene="mine")).assign(settings=population)
+    runs = runs_of(solved(110.0, scene="mine")).assign(settings=population)
     assert "paper-figures" not in [table.name for table in all_tables(runs)]
     runs = runs_of(solved(156.0, scene="zigzag")).assign(settings=population)
     (figures,) = (table.frame for table in all_tables(runs) if table.name == "paper-figures")

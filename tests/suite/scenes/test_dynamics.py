@@ -229,3 +229,14 @@ def test_start_and_goal_need_to_be_free_at_time_0_only(end):
     comes_first = make_motion([(0, 0, y - 5), (9, 0, 0)])
     with pytest.raises(SceneError, match=r"lies inside on it\. Move it to free space\."):
         scene_of(Obstacle("on it", beside, Dynamics(comes_first)))
+
+
+@pytest.mark.parametrize("bad", [[["0", "1", "2"]], [[True, False, True]], [[0, 0, 10**400]]])
+def test_waypoints_that_are_no_numbers_are_refused(bad):
+    with pytest.raises(SceneError, match="its waypoints are no table of numbers"):
+        parse_dynamics({"motion": {"waypoints": bad}})
+
+
+def test_the_place_of_a_wrong_number_in_a_pair_is_named():
+    with pytest.raises(SceneError, match=r"its velocity is '2'\. Give a finite number"):
+        parse_dynamics({"motion": {"velocity": [1, "2"], "stop": 3}})

@@ -274,6 +274,90 @@ def test_name_and_properties_of_the_collection_are_kept(read):
     assert scene.stored_optimum(scene.query()) == 11.5
 
 
+SAVED = """{
+"type": "FeatureCollection",
+"name": null,
+"features": [
+{"type": "Feature", "properties": {"role": "workspace", "name": null, "motion": null,
+  "detection": null, "removal": null, "appears": null, "query": null}, "geometry":
+  {"type": "Polygon", "coordinates": [[[0, 0], [9, 0], [9, 9], [0, 9], [0, 0]]]}},
+{"type": "Feature", "properties": {"role": "obstacle", "name": null, "motion": null,
+  "detection": null, "removal": null, "appears": null, "query": null}, "geometry":
+  {"type": "Polygon", "coordinates": [[[4, 4], [6, 4], [6, 6], [4, 6], [4, 4]]]}},
+{"type": "Feature", "properties": {"role": "obstacle", "name": "bar", "motion":
+  {"waypoints": [[0, 0, 0], [9, 1, 0]], "velocity": null, "start": null, "stop": null},
+  "detection": {"range": null}, "removal": {"time": 5, "place": null, "distance": null},
+  "appears": null, "query": null}, "geometry":
+  {"type": "Polygon", "coordinates": [[[1, 7], [2, 7], [2, 8], [1, 7]]]}},
+{"type": "Feature", "properties": {"role": "start", "name": null, "motion": null,
+  "detection": null, "removal": null, "appears": null, "query": null}, "geometry":
+  {"type": "Point", "coordinates": [1, 1]}},
+{"type": "Feature", "properties": {"role": "goal", "name": "", "motion": null, "detection": null,
+  "removal": null, "appears": null, "query": ""}, "geometry":
+  {"type": "Point", "coordinates": [8, 8]}}],
+"properties": {"optimum": null, "world": null, "gates": null}
+}"""
+"""With a column for each property that any feature has, as geopandas saves them."""
+
+
+def test_what_is_null_is_left_out(read):
+    scene = read(SAVED)
+    assert scene.name == "hall"
+    assert [o.name for o in scene.obstacles] == ["obstacle 1", "bar"]
+    pillar, bar = scene.obstacles
+    assert pillar.dynamics is None
+    assert bar.dynamics.motion.offset(9).tolist() == [1, 0]
+    assert (bar.dynamics.detection.range, bar.dynamics.removal.time) == (None, 5.0)
+    assert [q.name for q in scene.queries] == ["main"]
+    assert scene.stored_optimum(scene.query()) is None
+    assert dict(scene.properties) == {}
+
+
+def test_a_collection_without_properties_may_say_so(read):
+    assert dict(read({**GOOD, "properties": None}).properties) == {}
+    with pytest.raises(SceneError, match=r"its properties are \[1\]. Give an object"):
+        read({**GOOD, "properties": [1]})
+
+
+def test_a_byte_order_mark_is_skipped(tmp_path):
+    file = tmp_path / "hall.geojson"
+    file.write_bytes(b"\xef\xbb\xbf" + json.dumps(GOOD).encode())
+    assert read_scene(file).name == "hall"
+
+
+@pytest.mark.parametrize("bad", ["abc", 7, [1], {"main": "abc"}, {"main": -1}, {"main": True}])
+def test_an_optimum_that_is_no_length_is_refused(read, bad):
+    with pytest.raises(SceneError, match=r"'optimum'.* is .*leave it out: it is computed"):
+        read({**GOOD, "properties": {"optimum": bad}})
+
+
+@pytest.mark.parametrize(
+    "bad", ["abc", {"left": 1}, {"left": [[0, 0]]}, {"left": [[0, 0], [1, "2"]]}]
+)
+def test_a_gate_that_is_no_segment_is_refused(read, bad):
+    with pytest.raises(SceneError, match=r"(gates|gate 'left').* is .*segment"):
+        read({**GOOD, "properties": {"gates": bad}})
+
+
+@pytest.mark.parametrize(
+    "bad", [["a"], {"a": 1}, True, "two\nlines", "x" * 201, float("nan"), "\x00", "\ud800"]
+)
+def test_a_name_that_is_no_line_of_text_is_refused(read, bad):
+    mend = "Give a text of one line"
+    with pytest.raises(SceneError, match=rf"the collection: its name is .*{mend}"):
+        read({**GOOD, "name": bad})
+    with pytest.raises(SceneError, match=rf"feature 2: its name is .*{mend}"):
+        read(changed(2, lambda f: f["properties"].update(name=bad)))
+    with pytest.raises(SceneError, match=rf"feature 3, query: its name is .*{mend}"):
+        read(changed(3, lambda f: f["properties"].update(query=bad)))
+
+
+def test_an_error_shows_the_beginning_of_a_long_value(read):
+    with pytest.raises(SceneError) as caught:
+        read(changed(2, lambda f: f["properties"].update(role=["wall"] * 10_000)))
+    assert len(str(caught.value)) < 250
+
+
 def same_after_a_round_trip(scene, path: Path) -> bool:
     write_scene(scene, path)
     again = read_scene(path)
@@ -329,3 +413,10 @@ def test_a_file_that_cannot_be_written_is_an_error_with_the_reason(tmp_path):
     scene = make_scene("one", box(0, 0, 9, 9), [], {"main": ((0, 0), (9, 9))})
     with pytest.raises(SceneError, match="can't be written"):
         write_scene(scene, tmp_path / "nowhere" / "out.geojson")
+
+
+@pytest.mark.parametrize("name", ["größe 7 ½ m²", "a\u00a0b", "家", 7, 1.0])
+def test_a_name_may_be_any_line_of_text_or_a_number(read, name, tmp_path):
+    scene = read({**GOOD, "name": name})
+    assert scene.name == str(name)
+    assert same_after_a_round_trip(scene, tmp_path / "out.geojson")

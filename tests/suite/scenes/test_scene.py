@@ -5,8 +5,8 @@ import pickle
 import numpy as np
 import pytest
 import shapely
-from shapely.affinity import rotate, scale
-from shapely.geometry import Polygon, box
+from shapely.affinity import rotate, scale, translate
+from shapely.geometry import Point, Polygon, box
 
 from suite.errors import SceneError
 from suite.scenes.scene import Obstacle, Scene, SceneWarning, make_scene, scene_fingerprint
@@ -128,7 +128,31 @@ def test_an_obstacle_narrower_than_the_grid_is_refused():
 
 def test_a_workspace_smaller_than_the_grid_is_refused():
     with pytest.raises(SceneError, match="workspace: narrower"):
-        scene_of(room=box(0, 0, 1e-10, 1e-10), queries={"main": ((0, 0), (0, 0))})
+        scene_of(room=box(0, 0, 10, 1e-10), queries={"main": ((0, 0), (9, 0))})
+
+
+def test_a_small_room_so_far_away_that_coordinates_cannot_tell_it_is_refused():
+    room = box(5e6, 5e6, 5e6 + 1e-3, 5e6 + 1e-3)
+    with pytest.raises(SceneError, match=r"workspace: 0.001 m wide, at .*\. Shift the scene"):
+        scene_of(room=room, queries={"main": ((5e6, 5e6), (5e6, 5e6))})
+
+
+@pytest.mark.parametrize("turn", range(0, 360, 15))
+def test_a_start_beside_the_wall_is_free_at_the_coordinates_of_a_map(turn):
+    def placed(shape: Polygon | Point) -> Polygon | Point:
+        return translate(rotate(shape, turn + 0.7, origin=(40, 30)), 691608.2, 5334765.7)
+
+    room, *walls = (placed(box(*b)) for b in ((0, 0, 80, 60), (10, 10, 30, 50), (30, 20, 55, 45)))
+    ends = [placed(Point(p)).coords[0] for p in ((3, 3), (77, 57))]
+    scene = make_scene("yard", room, walls, tuple(ends))
+    assert len(scene.arrangement.groups) == 1
+    assert scene.arrangement.groups[0].area == pytest.approx(20 * 40 + 25 * 25, rel=1e-8)
+
+
+def test_a_refused_start_is_printed_so_that_it_is_found_on_the_map():
+    room, pillar = box(461500, 5638000, 461600, 5638100), box(461520, 5638010, 461530, 5638020)
+    with pytest.raises(SceneError, match=r"\(461523\.25, 5638012\.125\) lies inside obstacle 1"):
+        scene_of(pillar, room=room, queries=((461523.25, 5638012.125), (461510, 5638010)))
 
 
 def test_start_or_goal_outside_the_workspace_is_refused():

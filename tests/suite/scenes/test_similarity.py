@@ -129,7 +129,7 @@ def test_the_robots_radius_is_not_scaled():
     larger = moved(scene, "scale=2", inflate=0.5)
     inflated = shapely.box(3, -5, 7, 5).buffer(0.5)
     assert larger.bounds == pytest.approx((-4.5, -4.5, 14.5, 14.5))
-    assert larger.obstacles[0].polygon.difference(inflated.buffer(1e-6)).is_empty
+    assert larger.obstacles[0].polygon.difference(inflated.buffer(1e-3)).is_empty
 
 
 DYNAMIC = Dynamics(

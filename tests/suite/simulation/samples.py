@@ -15,7 +15,7 @@ EVERY = 0.004
 """Seconds between two samples: a robot of 6 m/s and an obstacle of 8 m/s move 6 cm meanwhile."""
 
 DEEPER = 1e-5
-"""Metres: above HIT_DEPTH, and far below what 6 cm of way cut out of an obstacle."""
+"""Metres: above a hit's depth, and far below what 6 cm of way cut out of an obstacle."""
 
 
 def sampled_times(trajectory: Trajectory) -> NDArray[np.float64]:

@@ -129,7 +129,7 @@ def moving(draw: st.DrawFn) -> Obstacle:
 
 SAMPLES = 2001
 DEEPER = 1e-5
-"""Metres: above HIT_DEPTH, and far below what a lattice polygon has in it."""
+"""Metres: above a hit's depth, and far below what a lattice polygon has in it."""
 
 
 @settings(max_examples=100)

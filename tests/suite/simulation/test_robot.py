@@ -7,18 +7,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import Polygon
 
+from suite.geometry.coordinates import coordinates_of
 from suite.geometry.kernels import first_collision, segment_enters
-from suite.geometry.tolerances import HIT_DEPTH
 from suite.scenes.scene import make_scene
 from suite.simulation.hits import hits
 from suite.simulation.robot import Robot
 from tests.strategies import lattice_polygons
 
+NEAR = coordinates_of((0.0, 0.0, 10.0, 10.0))
 CORNER = np.array([(0.0, 0.0), (3.0, 0.0), (3.0, 4.0)])
 
 
 def on(path: np.ndarray, speed: float = 2.0) -> Robot:
-    robot = Robot(path[0], speed)
+    robot = Robot(path[0], speed, NEAR)
     robot.path = path
     return robot
 
@@ -48,7 +49,7 @@ def test_what_lies_ahead_is_what_it_then_drives():
 
 
 def test_without_a_path_it_stays():
-    robot = Robot(CORNER[0], 2.0)
+    robot = Robot(CORNER[0], 2.0, NEAR)
     assert robot.drive(3.0) == []
     assert (robot.time, robot.place.tolist()) == (3.0, [0, 0])
     assert robot.ahead(1.0) is None
@@ -56,15 +57,15 @@ def test_without_a_path_it_stays():
 
 def test_in_an_obstacle_it_finds_no_place():
     scene = make_scene("s", shapely.box(0, 0, 9, 9), [shapely.box(2, 2, 4, 4)], ((0, 0), (9, 9)))
-    robot = Robot(np.array([3.0, 3.0]), 1.0)
+    robot = Robot(np.array([3.0, 3.0]), 1.0, NEAR)
     assert not robot.settle(scene)
     assert robot.place.tolist() == [3, 3]
 
 
-@pytest.mark.parametrize("depth", [0.5 * HIT_DEPTH, 0.9 * HIT_DEPTH])
+@pytest.mark.parametrize("depth", [0.5 * NEAR.hit_depth, 0.9 * NEAR.hit_depth])
 def test_from_what_is_less_deep_than_a_hit_it_finds_a_way_out(depth):
     scene = make_scene("s", shapely.box(0, 0, 9, 9), [shapely.box(2, 2, 4, 4)], ((0, 0), (9, 9)))
-    robot = Robot(np.array([2.0 + depth, 3.0]), 1.0)
+    robot = Robot(np.array([2.0 + depth, 3.0]), 1.0, NEAR)
     assert robot.settle(scene)
     assert not segment_enters(*robot.place, *robot.place, scene.arrays)
 

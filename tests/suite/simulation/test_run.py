@@ -11,8 +11,8 @@ from shapely.geometry import box
 
 from baselines.visibility_graph import VisibilityGraphPlanner
 from kbga.plugin import KBGAPlanner
-from suite.geometry.tolerances import HIT_DEPTH
 from suite.planner import Budget, Plan, PlanAfresh, Planner, PlanStatus, Recorder, Replanner
+from suite.scenes.catalogue import load_scene
 from suite.scenes.dynamics import Detection, Dynamics, Removal, constant_speed, make_motion
 from suite.scenes.scene import Obstacle, Query, Scene, make_scene
 from suite.simulation.hits import hits
@@ -70,12 +70,22 @@ def nothing(_scene: Scene, _query: Query) -> Plan:
     return Plan(PlanStatus.EXHAUSTED)
 
 
-def slowly(seconds: float, answer: Callable[[Scene, Query], Plan]):
-    def answered(scene: Scene, query: Query) -> Plan:
-        time.sleep(seconds)
-        return answer(scene, query)
+@pytest.fixture
+def slowly(monkeypatch: pytest.MonkeyPatch):
+    """Answers that take so many seconds of a clock that goes for them alone: none of this machine's
+    own slowness is in it.
+    """
+    now = [0.0]
+    monkeypatch.setattr(time, "perf_counter", lambda: now[0])
 
-    return answered
+    def slow(seconds: float, answer: Callable[[Scene, Query], Plan]):
+        def answered(scene: Scene, query: Query) -> Plan:
+            now[0] += seconds
+            return answer(scene, query)
+
+        return answered
+
+    return slow
 
 
 def fail(_scene: Scene, _query: Query) -> Plan:
@@ -181,22 +191,22 @@ def test_every_run_ends_at_its_time_limit():
 # The time that planning takes
 
 
-def test_the_robot_waits_for_its_first_path():
+def test_the_robot_waits_for_its_first_path(slowly):
     done = run(world=WORLD, replanner=Scripted(slowly(0.2, over()), over()))
-    assert 0.2 <= done.trajectory.waiting_s < 0.4
-    assert done.trajectory.end == pytest.approx(9.0 + done.trajectory.waiting_s, abs=0.05)
+    assert done.trajectory.waiting_s == pytest.approx(0.2)
+    assert done.trajectory.end == pytest.approx(9.2)
 
 
-def test_it_goes_on_along_its_old_path_while_it_plans_and_joins_the_new_one_straight():
+def test_it_goes_on_along_its_old_path_while_it_plans_and_joins_the_new_one_straight(slowly):
     done = run(world=WORLD, replanner=Scripted(over(), slowly(0.2, over((12, 12))), over()))
     way = done.trajectory
     assert way.at(1.2)[0].tolist() == pytest.approx([3.4, 10.0], abs=0.05)
     after = way.at(1.9)[0]
     assert after[1] > 10.0
-    assert way.waiting_s < 0.05
+    assert way.waiting_s == pytest.approx(0.0, abs=1e-9)
 
 
-def test_it_does_not_drive_into_what_it_knows_while_it_plans():
+def test_it_does_not_drive_into_what_it_knows_while_it_plans(slowly):
     late = Obstacle("late", box(6, 5, 7, 15), Dynamics(appears=2.0))
     planner = Scripted(over(), over(), slowly(0.8, over((6, 4), (7, 4))), over())
     done = run(late, world=WORLD, replanner=planner)
@@ -205,14 +215,14 @@ def test_it_does_not_drive_into_what_it_knows_while_it_plans():
     assert done.trajectory.at(2.7)[0].tolist() == pytest.approx([5.0, 10.0], abs=0.05)
 
 
-def test_an_update_that_finds_the_planner_at_work_does_not_ask_it():
+def test_an_update_that_finds_the_planner_at_work_does_not_ask_it(slowly):
     planner = Scripted(over(), slowly(1.3, over()), over())
     done = run(world=WORLD, replanner=planner)
     times = [round(replan.time) for replan in done.replans[:4]]
     assert times == [0, 1, 3, 4]
 
 
-def test_a_path_that_comes_late_is_not_taken_into_what_is_known_by_then():
+def test_a_path_that_comes_late_is_not_taken_into_what_is_known_by_then(slowly):
     late = Obstacle("late", box(12, 5, 13, 15), Dynamics(appears=2.0))
     planner = Scripted(over(), slowly(1.3, over()), nothing)
     done = run(late, world=WORLD, replanner=planner)
@@ -282,7 +292,7 @@ def test_every_run_ends_and_its_story_is_consistent(planner, scene, interval, se
     assert done.reached or way.end == 25.0
     assert np.all(np.diff(way.times) >= 0.0)
     steps, spans = np.hypot(*np.diff(way.xy, axis=0).T), np.diff(way.times)
-    assert np.all(steps <= world.speed * spans + 2.0 * HIT_DEPTH), "faster than it can be"
+    assert np.all(steps <= world.speed * spans + 2e-6), "faster than it can be"
     assert {r.status for r in done.replans} <= {"solved", "infeasible", "exhausted", ENCLOSED}
     assert done.hits == tuple(hits(scene, way))
     static = {o.name for o in scene.obstacles if o.dynamics is None}
@@ -304,3 +314,17 @@ def test_the_same_seed_gives_the_same_trajectory_when_planning_is_free():
 def test_any_planner_plans_afresh_at_each_update():
     replanner = VisibilityGraphPlanner().replanner(np.random.default_rng(0))
     assert isinstance(replanner, PlanAfresh)
+
+
+@pytest.mark.parametrize("place", ["shift=691608.2:5334765.7", "turn=33,shift=-13500000.5:9000000"])
+def test_the_same_scene_at_the_coordinates_of_a_map_has_the_same_story(place):
+    world = WorldSettings(2.0, 2.0, 20.0, 200.0, charge=Charge.ZERO)
+    here, there = (
+        simulate(scene, scene.query(), exact(), world)
+        for scene in (load_scene("door"), load_scene(f"door@{place}"))
+    )
+    assert here.reached
+    assert there.reached
+    assert not there.hits
+    assert there.trajectory.end == pytest.approx(here.trajectory.end, abs=1e-4)
+    assert len(there.replans) == len(here.replans)

@@ -248,7 +248,7 @@ from suite.store.write import open_store
 with open_store(Path(sys.argv[1])) as store:
     store.begin_session({"matrix": "walls", "pid": 4711, "host": "here", "started_at": "noon"})
     print("open", flush=True)
-    time.sleep(60)
+    time.sleep(3600)
 """
 
 

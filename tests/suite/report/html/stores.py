@@ -51,7 +51,16 @@ def ran(scene: str | Path, planner: str, seed: int = 0) -> RunRecord:
 def failed(status: PlanStatus = PlanStatus.ERROR, reason: str = TRACEBACK, **cell) -> RunRecord:
     """A run that ended badly, made by hand."""
     nothing = dict.fromkeys(
-        ("cost", "gap", "claimed_cost", "time_to_best_s", "cpu_to_best_s", "path", "claim_differs")
+        (
+            "cost",
+            "gap",
+            "optimum",
+            "claimed_cost",
+            "time_to_best_s",
+            "cpu_to_best_s",
+            "path",
+            "claim_differs",
+        )
     )
     return make_record(
         make_cell(**cell), **nothing, status=status, reason=reason, improvements=(), trace=()

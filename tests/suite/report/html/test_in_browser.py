@@ -2,6 +2,7 @@
 
 import os
 import re
+from datetime import datetime, timedelta
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,13 @@ pytestmark = pytest.mark.skipif(
     not os.access(CHROMIUM, os.X_OK),
     reason=f"no {CHROMIUM}: `make browser` installs it, as root on Debian",
 )
+
+BUSY_MS = 300_000.0
+"""More than anything takes on a machine that is busy."""
+expect.set_options(timeout=BUSY_MS)
+
+STEP_MS = 400
+"""How long a generation is shown by a player that plays."""
 
 ARGUMENTS = (
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
@@ -39,17 +47,26 @@ def report(tmp_path_factory):
 
 
 class Seen:
-    """A page that is open, what it asked for and what it complained of."""
+    """A page that is open, what it asked for and what it complained of.
 
-    def __init__(self, browser, file, **context):
+    stands : whether its time stands still, and goes on only as a test lets it.
+    """
+
+    def __init__(self, browser, file, *, stands=False, **context):
         self.context = browser.new_context(**context)
+        self.context.set_default_timeout(BUSY_MS)
         self.page = self.context.new_page()
+        if stands:
+            self.page.clock.install()
         self.requests: list[str] = []
         self.complaints: list[str] = []
         self.page.on("request", lambda request: self.requests.append(request.url))
         self.page.on("console", lambda message: self.complaints.append(message.text))
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.goto(file.as_uri())
+        if stands:
+            # In a while, so that all that a page does when it is opened is done.
+            self.page.clock.pause_at(datetime.now() + timedelta(hours=1))
 
     def column(self, table, number):
         cells = f'[data-table="{table}"] tbody tr:not([hidden]) td:nth-child({number})'
@@ -63,11 +80,29 @@ class Seen:
         return self.page.locator(f"[data-value={name}]").text_content()
 
 
+AS_OPENED = """() => {
+  for (const box of document.querySelectorAll("input[type=checkbox]"))
+    box.checked = box.defaultChecked;
+  for (const choice of document.querySelectorAll("select")) {
+    choice.selectedIndex = 0;
+    choice.dispatchEvent(new Event("change"));
+  }
+}"""
+"""Choices are taken back. How tables are sorted is not: each test sorts for itself."""
+
+
+@pytest.fixture(scope="module")
+def opened(browser, report):
+    page = Seen(browser, report)
+    yield page
+    page.context.close()
+
+
 @pytest.fixture
-def seen(browser, report):
-    opened = Seen(browser, report)
+def seen(opened, report):
+    """The page, which takes seconds to open: once for all tests, who find it as it was opened."""
+    opened.page.evaluate(AS_OPENED)
     yield opened
-    opened.context.close()
     assert opened.complaints == []
     assert opened.requests == [report.as_uri()], "nothing else is fetched"
 
@@ -193,7 +228,8 @@ def test_the_player_steps_by_click_and_by_keyboard(seen):
     assert stage.startswith("kbga on zigzag, seed 0. Generation")
 
 
-def test_the_player_plays_to_the_end_and_can_be_paused(seen):
+def test_the_player_plays_to_the_end_and_can_be_paused(browser, report):
+    seen = Seen(browser, report, stands=True)
     play = seen.page.locator("[data-play]")
     slider = seen.page.locator("#player-generation")
     slider.focus()
@@ -205,9 +241,13 @@ def test_the_player_plays_to_the_end_and_can_be_paused(seen):
     play.click()
     assert play.text_content() == "Play"
     play.click()
-    expect(play).to_have_text("Play")
+    seen.page.clock.run_for(STEP_MS)
+    assert play.text_content() == "Pause"
+    seen.page.clock.run_for(STEP_MS)
+    assert play.text_content() == "Play"
     number, total = seen.value("generation").split(" of ")
     assert number == total
+    seen.context.close()
 
 
 def test_another_run_is_played_on_its_own_scene(seen):
@@ -226,12 +266,14 @@ def test_a_narrow_window_is_not_scrolled_sideways(browser, report):
 
 
 def test_readers_who_want_no_motion_get_a_slower_player(browser, report):
-    calm = Seen(browser, report, reduced_motion="reduce")
+    calm = Seen(browser, report, stands=True, reduced_motion="reduce")
     style = "getComputedStyle(document.documentElement).scrollBehavior"
     assert calm.page.evaluate(style) == "auto"
     calm.page.locator("[data-play]").click()
-    calm.page.wait_for_timeout(700)
+    calm.page.clock.run_for(3 * STEP_MS)
     assert calm.value("generation").startswith("0 of ")
+    calm.page.clock.run_for(STEP_MS)
+    assert calm.value("generation").startswith("1 of ")
     calm.context.close()
 
 

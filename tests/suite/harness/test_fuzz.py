@@ -1,0 +1,102 @@
+"""A matrix that went wrong is an error of a line or two, or a right matrix: no traceback."""
+
+import random
+import tomllib
+import warnings
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from suite.errors import MatrixError
+from suite.harness import matrix as matrix_module
+from suite.harness.matrix import load_matrix
+from suite.harness.matrix_file import FOLDER, matrix_file, matrix_names
+from suite.plugins.discovery import planner_info
+from suite.scenes.catalogue import load_scene
+from suite.scenes.scene import SceneWarning
+from tests.mutations import as_toml, mutated_bytes, mutated_document
+
+SAMPLE, ALL = 100, 1000
+AT_A_TIME = 50
+"""Mutations of one test."""
+
+LONGEST = 800
+"""Characters of an error: it may name all planners or all scenes that there are."""
+
+CELLS = 20_000
+"""Of a matrix whose cells are looked at; more would take the time of many mutations."""
+
+LOTS = [
+    pytest.param(first, marks=[pytest.mark.slow] if first >= SAMPLE else [])
+    for first in range(0, ALL, AT_A_TIME)
+]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _scenes_are_drawn_once():
+    """The same few scenes and planners are asked for hundreds of times."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(matrix_module, "load_scene", cache(load_scene))
+        patch.setattr(matrix_module, "planner_info", cache(planner_info))
+        yield
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with the scene files that the matrices of the suite name."""
+    made = tmp_path_factory.mktemp("matrices")
+    for file in FOLDER.glob("*.geojson"):
+        (made / file.name).write_bytes(file.read_bytes())
+    return made
+
+
+def mutation(seed: int) -> bytes:
+    """A matrix that went wrong: every second one is a document, the others are bytes."""
+    text = _lighter(matrix_file(random.Random(seed).choice(matrix_names())).read_text())
+    if seed % 2:
+        return mutated_bytes(text, seed)
+    return as_toml(mutated_document(tomllib.loads(text), seed)).encode()
+
+
+def _lighter(text: str) -> str:
+    """The same with scenes that are drawn in no time; of twins two are as good as ten."""
+    return text.replace("twin=1..10", "twin=1..2").replace("000", "0")
+
+
+@pytest.mark.parametrize("first", LOTS)
+def test_a_matrix_that_went_wrong_is_an_error_or_a_right_matrix(first, folder):
+    outcomes = {"error": 0, "matrix": 0}
+    for seed in range(first, first + AT_A_TIME):
+        file = folder / f"{seed}.toml"
+        file.write_bytes(mutation(seed))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            warnings.simplefilter("ignore", SceneWarning)
+            try:
+                found = load_matrix(file)
+            except MatrixError as error:
+                check_words(str(error), file)
+                outcomes["error"] += 1
+            else:
+                check_right(found)
+                outcomes["matrix"] += 1
+    assert min(outcomes.values()) > 0, outcomes
+
+
+def check_words(message: str, file: Path) -> None:
+    assert file.name in message
+    assert len(message.splitlines()) <= 2, message
+    assert len(message) <= LONGEST, message
+
+
+def check_right(found: matrix_module.Matrix) -> None:
+    """Its cells are as many as its parts say, each another one, and each can be named."""
+    of_scenes = [
+        len(scene.queries) * max(len(worlds), 1) * len(seeds) * len(found.variants)
+        for scene, worlds, seeds in zip(found.scenes, found.worlds, found.scene_seeds, strict=True)
+    ]
+    if sum(of_scenes) <= CELLS:
+        cells = found.cells()
+        assert len(cells) == sum(of_scenes)
+        assert len({cell.key for cell in cells}) == len(cells)

@@ -1,0 +1,77 @@
+"""A robot with a radius: no accepted path comes nearer to anything that is drawn than that."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from shapely.affinity import rotate, translate
+from shapely.geometry import Polygon
+
+from suite.referee.path import judge
+from suite.scenes.exact import shortest_path
+from suite.scenes.scene import Scene, make_scene
+from tests.strategies import SIDE, lattice_boxes, lattice_polygons
+
+ROOM = shapely.box(0, 0, SIDE, SIDE)
+PLACES = np.stack(np.meshgrid(*[np.arange(SIDE) + 0.5] * 2), axis=-1).reshape(-1, 2)
+
+
+@st.composite
+def rooms_for_a_disc(draw: st.DrawFn) -> tuple[list[Polygon], np.ndarray, float]:
+    """Obstacles, two places where the disc has room, and its radius."""
+    polygons = draw(st.lists(lattice_boxes() | lattice_polygons(), min_size=1, max_size=4))
+    radius = draw(st.floats(0.02, 0.45))
+    free = PLACES[shapely.distance(shapely.union_all(polygons), shapely.points(PLACES)) > radius]
+    assume(len(free) > 1)
+    ends = draw(st.permutations(range(len(free))))[:2]
+    return polygons, free[ends], radius
+
+
+def keeps_away(scene: Scene, room: Polygon, drawn: list[Polygon], radius: float) -> None:
+    path = shortest_path(scene, scene.query()).path
+    assume(path is not None)
+    assert judge(scene, scene.query(), path).valid
+    way = shapely.LineString(path)
+    slack = 2.0 * scene.coordinates.grid
+    assert min(way.distance(polygon) for polygon in drawn) >= radius - slack
+    assert way.distance(room.exterior) >= radius - slack
+
+
+@settings(max_examples=60)
+@given(rooms_for_a_disc())
+def test_the_shortest_path_of_a_disc_keeps_its_radius_away_from_everything_drawn(drawn):
+    polygons, ends, radius = drawn
+    keeps_away(
+        make_scene("disc", ROOM, polygons, tuple(ends), inflate=radius), ROOM, polygons, radius
+    )
+
+
+@settings(max_examples=20)
+@given(rooms_for_a_disc(), st.floats(0.0, 360.0))
+def test_so_it_does_at_the_coordinates_of_a_map(drawn, angle):
+    polygons, ends, radius = drawn
+    room, *moved = (
+        translate(rotate(p, angle, origin=(0, 0)), 691608.2, 5334765.7) for p in (ROOM, *polygons)
+    )
+    at = [
+        shapely.get_coordinates(
+            translate(rotate(shapely.Point(end), angle, origin=(0, 0)), 691608.2, 5334765.7)
+        )[0]
+        for end in ends
+    ]
+    keeps_away(make_scene("disc", room, moved, tuple(at), inflate=radius), room, moved, radius)
+
+
+@pytest.mark.parametrize("radius", [0.3, 1.0, 2.5])
+def test_rounding_a_corner_costs_hardly_more_than_the_circle(radius):
+    wall = shapely.box(8, -20, 12, 5)
+    scene = make_scene(
+        "wall", shapely.box(-20, -30, 40, 30), [wall], ((0, 0), (20, 0)), inflate=radius
+    )
+    found = shortest_path(scene, scene.query()).length
+    # From (0, 0) a tangent to the circle around (8, 5), its arc, the top, and the same again.
+    tangent = np.sqrt(8.0**2 + 5.0**2 - radius**2)
+    heading = np.arctan2(5.0, 8.0) + np.arcsin(radius / np.hypot(8.0, 5.0))
+    exact = 2.0 * (tangent + radius * heading) + 4.0
+    assert exact <= found <= exact * 1.0001
