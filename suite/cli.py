@@ -3,13 +3,16 @@
 import sys
 import warnings
 from collections.abc import Callable
+from contextlib import nullcontext
 from importlib.metadata import version as version_of
 from typing import Annotated
 
 import typer
 
 from suite.commands import planners, reports, runs, scenes
+from suite.commands.output import apart
 from suite.errors import KbgaBenchError
+from suite.processes.farewell import ending
 from suite.processes.output import end_quietly, show_warning
 
 app = typer.Typer(
@@ -42,7 +45,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "report": reports.report,
 }
 for name, command in COMMANDS.items():
-    app.command(name)(command)
+    app.command(name)(apart(command))
 
 
 def _say_version(wanted: bool) -> None:
@@ -67,11 +70,18 @@ def main() -> None:
     """Run the command; errors that users can mend are one line and exit code 2."""
     warnings.showwarning = show_warning
     end_quietly()
-    try:
-        app(prog_name=app.info.name)
-    except KbgaBenchError as error:
-        typer.echo(f"kbga-bench: error: {_one_line(error)}", err=True)
-        sys.exit(2)
+    # Called by anybody else, as by tests, the process is not ours to end.
+    is_own = sys._getframe(1).f_globals.get("__name__") == "__main__"
+    with ending(_note) if is_own else nullcontext():
+        try:
+            app(prog_name=app.info.name)
+        except KbgaBenchError as error:
+            typer.echo(f"kbga-bench: error: {_one_line(error)}", err=True)
+            sys.exit(2)
+
+
+def _note(text: str) -> None:
+    typer.echo(f"kbga-bench: note: {text}", err=True)
 
 
 def _one_line(text: object) -> str:

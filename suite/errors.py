@@ -78,6 +78,18 @@ def check_file(
         raise error(f"{file}: there is no folder {file.parent}. Make it first.")
 
 
+def sentence(text: object) -> str:
+    """A text with a full stop, unless it has its own end: what others wrote may have one.
+
+    Examples
+    --------
+    >>> sentence("no such file"), sentence("another version?"), sentence("Install it.")
+    ('no such file.', 'another version?', 'Install it.')
+    """
+    words = str(text).rstrip()
+    return words if words.endswith((".", "?", "!", ":")) else f"{words}."
+
+
 def did_you_mean(word: str, words: Iterable[str]) -> str:
     """A hint at the nearest of some words, to be put behind an error, or nothing.
 

@@ -10,6 +10,7 @@ import contextlib
 import hashlib
 import os
 import shutil
+import time
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -44,6 +45,19 @@ SOURCES = (
 """The files that hold kernels, and those beside them that hold what kernels read: tolerances,
 sizes, settings. All of the packages need not be read to know them; a test does."""
 
+_OURS = ("suite", "kbga", "baselines")
+
+TELL_S = 1.0
+"""Compiling for so long is told of, seconds."""
+
+TOLD = "KBGA_BENCH_TOLD_OF_COMPILING"
+"""The variable by which a command and its processes say it once."""
+
+TOLD_WORDS = (
+    "kbga-bench: compiling the kernels, once after an install or an update: half a minute to two "
+    "minutes, and longer on a busy machine."
+)
+
 _KEPT = 4
 """Folders of older sources that stay, so that two checkouts side by side don't evict each other."""
 
@@ -75,6 +89,41 @@ def sources() -> list[Path]:
     return found
 
 
+class _Tells(event.Listener):
+    """Says on standard error, once for a command, that kernels of ours are being compiled.
+
+    Only when that has taken a while: a single small kernel is done before anybody has wondered.
+    Where it goes is settled when this file is imported: a fork server may be silenced later.
+    """
+
+    def __init__(self) -> None:
+        self._spent_s = 0.0
+        self._begun: list[float] = []
+        self._told = TOLD in os.environ
+        with contextlib.suppress(OSError):
+            self._terminal = os.dup(2)
+
+    def on_start(self, begun: event.Event) -> None:
+        module = begun.data["dispatcher"].py_func.__module__
+        if self._begun or module.partition(".")[0] in _OURS:
+            self._begun.append(time.monotonic())
+            self._tell(self._spent_s + self._begun[-1] - self._begun[0])
+
+    def on_end(self, _: event.Event) -> None:
+        if self._begun:
+            began = self._begun.pop()
+            self._spent_s += 0.0 if self._begun else time.monotonic() - began
+
+    def _tell(self, spent_s: float) -> None:
+        if self._told or spent_s < TELL_S:
+            return
+        self._told = True
+        # Past os.environ: who watches that for what planners do to it sees nothing of ours.
+        os.putenv(TOLD, "1")
+        with contextlib.suppress(AttributeError, OSError):
+            os.write(self._terminal, f"{TOLD_WORDS}\n".encode())
+
+
 class _MakesRoom(event.Listener):
     """Deletes the folders of older sources when something is compiled.
 
@@ -95,4 +144,5 @@ class _MakesRoom(event.Listener):
 
 
 numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
+event.register("numba:compile", _Tells())  # type: ignore[no-untyped-call]
 event.register("numba:compile", _MakesRoom())  # type: ignore[no-untyped-call]

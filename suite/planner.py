@@ -35,6 +35,10 @@ INTERFACE = 1
 """Version of what this file promises; it rises when a planner written for it would break."""
 
 
+LARGEST_COUNT = 2**63 - 1
+"""Of generations and checks: what a row of a store can hold."""
+
+
 class PlanStatus(StrEnum):
     """How a run ended, in a word."""
 
@@ -85,6 +89,10 @@ class Budget:
             value = getattr(self, name)
             if value is not None and not value > 0:
                 raise ContractError(f"budget: {name} is {value}. It must be above 0, or left out.")
+            if value is not None and name in ("generations", "checks") and value > LARGEST_COUNT:
+                raise ContractError(
+                    f"budget: {name} is {value}. It must be {LARGEST_COUNT} or less, or left out."
+                )
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,6 +239,9 @@ class Planner(ABC, Generic[SettingsT]):
     """A frozen dataclass whose fields all have defaults."""
     abilities: ClassVar[Abilities] = Abilities()
     """What it can do."""
+    version_files: ClassVar[tuple[str, ...]] = ()
+    """Files that belong to its version as its code does, such as weights: names beside the module,
+    or of whole folders, written out as a tuple of strings. Rows of others are not rows of it."""
     interface: ClassVar[int] = INTERFACE
     """The version of this file that it is written for. Say it in a plugin that is installed by
     others: one for another version is then refused, with that reason."""

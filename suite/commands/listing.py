@@ -86,7 +86,7 @@ def planner_for_people(row: dict[str, Any]) -> dict[str, Any]:
         "name": row["name"],
         # Without the hash of its code, which is for programs.
         "from": " ".join([row["distribution"], *_words_but_hashes(row["version"])]),
-        "abilities": abilities if row["available"] else f"unavailable: {row['reason']}",
+        "abilities": abilities if row["available"] else row["reason"],
         "budgets": row["budgets"],
     }
 

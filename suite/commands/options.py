@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from suite import seeds
+
 
 class TextFormat(StrEnum):
     """How a single result is printed."""
@@ -24,7 +26,7 @@ SceneArgument = Annotated[
 ]
 StoreArgument = Annotated[Path, typer.Argument(metavar="STORE", help="Result store (SQLite).")]
 PlannerOption = Annotated[str, typer.Option(help="Name of the planner; see `list planners`.")]
-SeedOption = Annotated[int, typer.Option(min=0, help="Of the random stream.")]
+SeedOption = Annotated[int, typer.Option(min=0, max=seeds.MOST, help="Of the random stream.")]
 QueryOption = Annotated[str | None, typer.Option(help="Name of the query; default: the first.")]
 SettingsOption = Annotated[
     list[str] | None,

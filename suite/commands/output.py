@@ -1,27 +1,49 @@
 """How commands print."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
 import typer
 
 from suite.commands.options import TextFormat
+from suite.processes.output import print_aside, words
 
 WIDEST = 44
 """Letters of a line in a column of a table."""
 
 
+def apart(command: Callable[..., None]) -> Callable[..., None]:
+    """A command whose standard output has nothing in it but what it says by :func:`say`.
+
+    What planners and libraries print goes to standard error, whenever they do: imported,
+    constructed, planning.
+    """
+
+    @wraps(command)
+    def run(*arguments: Any, **options: Any) -> None:
+        with print_aside():
+            command(*arguments, **options)
+
+    return run
+
+
+def say(text: Any, *, nl: bool = True, err: bool = False) -> None:
+    """Write what a command has to say: to standard output, or beside it."""
+    typer.echo(text, file=None if err else words(), nl=nl, err=err)
+
+
 def print_json(value: Any) -> None:
     """Print plain data for programs."""
-    typer.echo(json.dumps(value, indent=2))
+    say(json.dumps(value, indent=2))
 
 
 def print_file(file: Path, style: TextFormat) -> None:
     """Name a file that was written; beside JSON, which is for programs, on standard error."""
-    typer.echo(file, err=style is TextFormat.JSON)
+    say(file, err=style is TextFormat.JSON)
 
 
 @contextmanager
@@ -49,7 +71,7 @@ def print_rows(rows: list[dict[str, Any]]) -> None:
 
     headers = list(rows[0]) if rows else []
     texts = [[_as_text(value) for value in row.values()] for row in rows]
-    typer.echo(tabulate(texts, headers, disable_numparse=True, maxcolwidths=WIDEST))
+    say(tabulate(texts, headers, disable_numparse=True, maxcolwidths=WIDEST))
 
 
 def _as_text(value: Any) -> str:

@@ -25,8 +25,7 @@ from suite.commands.options import (
     WallOption,
     use_plugins,
 )
-from suite.commands.output import print_file, print_json, working
-from suite.processes.output import print_aside
+from suite.commands.output import print_file, print_json, say, working
 
 
 class Charge(StrEnum):
@@ -73,21 +72,19 @@ def plan(
     )
     # Of the first population only: more would slow down the run that is timed.
     recorder = Recorder(snapshot_of=lambda generation: plot is not None and generation == 0)
-    if plot is None:
-        with print_aside():
-            record = run_cell(cell, recorder=recorder)
-    else:
+    if plot is not None:
         from suite.report.figures.files import check_figure_file
-        from suite.report.figures.run import draw_record
 
         check_figure_file(plot)
-        with print_aside():
-            record = run_cell(cell, recorder=recorder)
+    record = run_cell(cell, recorder=recorder)
+    if plot is not None:
+        from suite.report.figures.run import draw_record
+
         draw_record(record, recorder.snapshots, plot)
     if style is TextFormat.JSON:
         print_json(as_data(record))
     else:
-        typer.echo(as_text(record))
+        say(as_text(record))
     if plot is not None:
         print_file(plot, style)
     raise typer.Exit(0 if succeeded(record) else 1)
@@ -135,7 +132,7 @@ def check(
     if style is TextFormat.JSON:
         print_json(as_data(names[0], results))
     else:
-        typer.echo(as_text(names[0], results))
+        say(as_text(names[0], results))
     raise typer.Exit(1 if broken(results) else 0)
 
 
@@ -148,11 +145,11 @@ def _check_several(names: list[str], limit_s: float, style: TextFormat, *, lenie
     for checked in check_each(names, limit_s):
         done.append(checked)
         if style is TextFormat.TEXT and checked.unavailable is None:
-            typer.echo(f"{as_text(checked.planner, checked.results)}\n")
+            say(f"{as_text(checked.planner, checked.results)}\n")
     if style is TextFormat.JSON:
         print_json([checked.as_data for checked in done])
     else:
-        typer.echo("\n".join(checked.line for checked in done))
+        say("\n".join(checked.line for checked in done))
     return all(lenient if checked.kept is None else checked.kept for checked in done)
 
 
@@ -174,8 +171,8 @@ def new_planner(
 
     files = write_new_planner(name, output)
     for file in files:
-        typer.echo(file)
-    typer.echo(f"Try it: kbga-bench check {name} --plugin {files[0]}")
+        say(file)
+    say(f"Try it: kbga-bench check {name} --plugin {files[0]}")
 
 
 def simulate(
@@ -262,12 +259,11 @@ def simulate(
         budget=Budget(wall_s, generations, checks, cpu_s),
         world=world_for(scene, overrides, cold=cold),
     )
-    with print_aside():
-        record = run_cell(cell)
+    record = run_cell(cell)
     if style is TextFormat.JSON:
         print_json(simulation_as_data(record))
     else:
-        typer.echo(simulation_as_text(record, updates=updates))
+        say(simulation_as_text(record, updates=updates))
     done = simulation_of(record) if plot is not None or animate is not None else None
     if done is not None and plot is not None:
         from suite.report.figures.files import save

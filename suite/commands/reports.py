@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 from suite.commands.options import StoreArgument
+from suite.commands.output import say
 from suite.report.kinds import FigureFormat, Part, TableFormat
 
 ReferenceOption = Annotated[
@@ -64,12 +65,12 @@ def tables(
     shown = [table for table in found if table.name not in hidden]
     if output is not None:
         for path in write_tables(shown, output, style):
-            typer.echo(path)
+            say(path)
     else:
-        typer.echo("\n".join(render(table, style) for table in shown), nl=False)
+        say("\n".join(render(table, style) for table in shown), nl=False)
     if hidden:
         text = f"Left out, but with --only or --format csv: {', '.join(hidden)}."
-        typer.echo(f"\n{text}", err=output is not None or style is not TableFormat.TABLE)
+        say(f"\n{text}", err=output is not None or style is not TableFormat.TABLE)
 
 
 def compare(
@@ -97,8 +98,8 @@ def compare(
 
     rng = np.random.default_rng(BOOTSTRAP_SEED)
     found = compare_versions(read_runs(old), read_runs(new), rng, with_times=times)
-    typer.echo(render(found.table, style), nl=False)
-    typer.echo(f"\n{found.summary()}", err=style is not TableFormat.TABLE)
+    say(render(found.table, style), nl=False)
+    say(f"\n{found.summary()}", err=style is not TableFormat.TABLE)
     raise typer.Exit(1 if found.worse else 0)
 
 
@@ -126,7 +127,7 @@ def export(
         is_log = to is ExportFormat.OMPL_LOG
         files = write_ompl_logs(store, target) if is_log else [write_planner_arena(store, target)]
     for path in files:
-        typer.echo(path)
+        say(path)
 
 
 def results(
@@ -147,7 +148,7 @@ def results(
     from suite.report.results_folder import write_results
 
     for path in write_results(store, directory, leave_out=set(leave_out or ()), figures=figures):
-        typer.echo(path)
+        say(path)
 
 
 def report(
@@ -164,4 +165,4 @@ def report(
     from suite.report.html.page import write_report
 
     write_report(store, output, reference=reference)
-    typer.echo(output)
+    say(output)

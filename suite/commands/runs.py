@@ -19,7 +19,7 @@ from suite.commands.options import (
     TextStyle,
     use_plugins,
 )
-from suite.commands.output import print_json
+from suite.commands.output import print_json, say
 
 
 class Where(StrEnum):
@@ -116,7 +116,7 @@ def run(
         with _executor(address) as cluster:
             at_a_time = cluster.slots() if cluster and jobs is None else jobs
         told = forecast_matrix(wanted, store, jobs=at_a_time, quick=quick, which=which)
-        typer.echo(told.as_text())
+        say(told.as_text())
         return
     with ending_tidily(), _executor(address) as cluster, open_store(store) as opened:
         clean = _merge_into(opened, merge or [])
@@ -144,14 +144,14 @@ def run(
                 )
             kept = keep_snapshots(wanted, opened, most=snapshots)
         except KeyboardInterrupt as interrupt:
-            typer.echo(
+            say(
                 "Stopped. All finished runs are kept; to go on, give the same command again.",
                 err=True,
             )
             for note in getattr(interrupt, "__notes__", ()):
-                typer.echo(note, err=True)
+                say(note, err=True)
             raise typer.Exit(getattr(interrupt, "exit_code", 130)) from None
-    typer.echo(" ".join(filter(None, (end.summary(), kept.summary()))))
+    say(" ".join(filter(None, (end.summary(), kept.summary()))))
     raise typer.Exit(0 if clean else 1)
 
 
@@ -189,7 +189,7 @@ def _merge_into(store: Any, sources: list[Path]) -> bool:
 
     done = merge(store, sources)
     for one in done:
-        typer.echo(one.as_text())
+        say(one.as_text())
     return not any(one.alarming for one in done)
 
 
@@ -205,7 +205,7 @@ def status(store: StoreArgument, style: TextStyle = TextFormat.TEXT) -> None:
     if style is TextFormat.JSON:
         print_json(found)
     else:
-        typer.echo(as_text(found))
+        say(as_text(found))
 
 
 def rerun(
@@ -253,5 +253,5 @@ def rerun(
     if style is TextFormat.JSON:
         print_json({**as_data(record), "key": cell.key, **plain(found)})
     else:
-        typer.echo(f"{as_text(record)}\n  {found.words}")
+        say(f"{as_text(record)}\n  {found.words}")
     raise typer.Exit(0 if found.same or not found.must_be_same else 1)

@@ -18,7 +18,7 @@ from suite.commands.options import (
     TextStyle,
     use_plugins,
 )
-from suite.commands.output import print_json, print_rows
+from suite.commands.output import print_json, print_rows, say
 
 
 class What(StrEnum):
@@ -101,7 +101,7 @@ def generate(
         raise typer.BadParameter(f"{rule} for {generator} scenes.", param_hint="--obstacles")
     check_scene_file(output)
     write_scene(moving(seed) if obstacles is None else scattered(obstacles, seed), output)
-    typer.echo(output)
+    say(output)
 
 
 def exact(
@@ -119,4 +119,4 @@ def exact(
     if style is TextFormat.JSON:
         print_json(found)
     else:
-        typer.echo(exact_as_text(found))
+        say(exact_as_text(found))

@@ -1,7 +1,8 @@
 """The contract of one planner, checked in a process of its own: it may hang or crash there.
 
-The process tells of each rule before it begins it. If it then hangs, dies or exits, that rule is
-broken, and the rules after it stay unlooked at: they would meet the same.
+The process tells of each rule and each run before it begins. If it then hangs, dies or exits, that
+rule is broken, and another process goes on: without the scene, if the run was one that most rules
+look at. What then remains unlooked at is called not tested.
 """
 
 import multiprocessing
@@ -14,11 +15,11 @@ from typing import Any
 
 from suite.conformance import wording
 from suite.conformance.finding import Finding, Kind, Result
-from suite.conformance.rules import RULES, apply, claim_of, rule_name
+from suite.conformance.rules import FIRST, RULES, apply, claim_of, rule_name
 from suite.conformance.rules_of.other_processes import same_path_in_another_process
 from suite.conformance.rules_of.runs import warms_up
 from suite.conformance.subject import Rule, Subject
-from suite.errors import PluginError
+from suite.errors import PluginError, sentence
 from suite.plugins.discovery import load_planner, planner_names
 from suite.plugins.settings import make_settings
 from suite.processes.family import REAP_S, kill_family
@@ -28,6 +29,9 @@ LIMIT_S = 30.0
 
 WARM_UP_S = 300.0
 """What it may take to import a planner and warm it up, compilation included, as in a matrix."""
+
+MOST_LOSSES = 4
+"""Processes that may be lost: whoever hangs everywhere takes LIMIT_S for each."""
 
 LOADING = -1
 """The plugin is imported; the rules are counted from 0."""
@@ -63,13 +67,58 @@ def check(
     """
     if planner not in planner_names():
         load_planner(planner)  # raises, and says which there are
+    results: list[Result] = []
+    without: set[str] = set()
+    losses: dict[int, Finding] = {}
+    for attempt in range(1, MOST_LOSSES + 1):
+        lost = _attempt(planner, settings or {}, limit_s, results, losses, frozenset(without))
+        if lost is None:
+            return results
+        number, rule = len(results), RULES[len(results)]
+        found = losses.setdefault(number, lost.finding)
+        if rule in FIRST:
+            return [*results, _broken(rule, found), *_untested(number + 1, rule)]
+        if attempt == MOST_LOSSES:
+            break
+        if lost.scene is not None:
+            without.add(lost.scene)  # the same rule once more, on the other scenes
+        else:
+            results.append(_broken(rule, found))
+    return [*results, _broken(rule, found), *_untested(number + 1, rule)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Loss:
+    """The process of the rules is gone.
+
+    finding : how.
+    scene : the small scene of the run that ended it, if its budget was an ordinary one.
+    """
+
+    finding: Finding
+    scene: str | None
+
+
+def _attempt(
+    planner: str,
+    settings: Mapping[str, Any],
+    limit_s: float,
+    results: list[Result],
+    losses: Mapping[int, Finding],
+    without: frozenset[str],
+) -> _Loss | None:
+    """Apply the rules that have no result yet, in a new process; what comes is put to the others.
+
+    A rule that has ended a process before is broken, whatever it says of the other scenes.
+    """
     receiver, sender = _CONTEXT.Pipe(duplex=False)
-    process = _CONTEXT.Process(target=_examine, args=(planner, settings or {}, sender))
+    arguments = (planner, settings, sender, len(results), without)
+    process = _CONTEXT.Process(target=_examine, args=arguments)
     process.start()
     try:
         with receiver:
             sender.close()
-            return _collected(process, receiver, planner, limit_s)
+            return _collected(process, receiver, planner, limit_s, results, losses)
     finally:
         kill_family(process.pid or 0)
         process.join(REAP_S)
@@ -129,8 +178,14 @@ def check_each(planners: Sequence[str], limit_s: float = LIMIT_S) -> Iterator[Ch
             yield Checked(planner, unavailable=str(error))
 
 
-def _examine(planner: str, settings: Mapping[str, Any], sender: "Connection[Any, None]") -> None:
-    """Send the number of each rule, the label of each run, and then the rule's result."""
+def _examine(
+    planner: str,
+    settings: Mapping[str, Any],
+    sender: "Connection[Any, None]",
+    first: int,
+    without: frozenset[str],
+) -> None:
+    """Send the number of each rule, each run, and then the rule's result."""
     os.setsid()
     os.dup2(2, 1)  # standard output is the report's
     try:
@@ -139,8 +194,10 @@ def _examine(planner: str, settings: Mapping[str, Any], sender: "Connection[Any,
     except PluginError as error:
         sender.send(error)
         return
-    subject = Subject(planner_class, made, on_run=sender.send)
-    for number, rule in enumerate(RULES):
+    subject = Subject(planner_class, made, sender.send, without)
+    if first > RULES.index(warms_up):
+        _ = subject.warm_up  # before the first rule, whose time is short
+    for number, rule in enumerate(RULES[first:], first):
         sender.send(number)
         sender.send(apply(rule, subject))
     sender.send(DONE)
@@ -149,10 +206,14 @@ def _examine(planner: str, settings: Mapping[str, Any], sender: "Connection[Any,
 
 
 def _collected(
-    process: Any, receiver: "Connection[None, Any]", planner: str, limit_s: float
-) -> list[Result]:
-    results: list[Result] = []
-    doing, label = LOADING, ""
+    process: Any,
+    receiver: "Connection[None, Any]",
+    planner: str,
+    limit_s: float,
+    results: list[Result],
+    losses: Mapping[int, Finding],
+) -> _Loss | None:
+    doing, run = LOADING, None
     while True:
         patience_s = limit_s if _is_warm(doing) else WARM_UP_S
         lost = None if receiver.poll(patience_s) else _late(patience_s)
@@ -160,22 +221,25 @@ def _collected(
             message: Any = None if lost else receiver.recv()
         except (EOFError, OSError):
             lost = _died(process)
-        if lost is not None and label:
-            lost = replace(lost, found=f"{label}: {lost.found}")
+        if lost is not None and doing == LOADING and not results:
+            how = sentence(lost.found)
+            raise PluginError(f"planner '{planner}': while it was imported, {how}")
+        if lost is not None and run is not None:
+            found = replace(lost, found=f"{run.label}: {lost.found}")
+            return _Loss(found, run.scene if run.ordinary else None)
         if lost is not None:
-            if doing == LOADING:
-                raise PluginError(f"planner '{planner}': while it was imported, {lost.found}.")
-            return [*results, *_ended(doing, lost)]
+            return _Loss(lost, None)
         if isinstance(message, PluginError):
             raise message
         if message == DONE:
-            return results
+            return None
         if isinstance(message, Result):
-            results.append(message)
+            loss = losses.get(len(results))
+            results.append(_broken(RULES[len(results)], loss) if loss else message)
         elif isinstance(message, int):
-            doing, label = message, ""
+            doing, run = message, None
         else:
-            label = message
+            run = message
 
 
 def _is_warm(doing: int) -> bool:
@@ -203,15 +267,14 @@ def _died(process: Any) -> Finding:
     )
 
 
-def _ended(number: int, finding: Finding) -> list[Result]:
-    """The rule that was not survived, and those after it."""
-    first, *others = RULES[number:]
-    name = rule_name(first)
+def _broken(rule: Rule, finding: Finding) -> Result:
+    return Result(rule_name(rule), claim_of(rule), Kind.BROKEN, finding)
+
+
+def _untested(first: int, lost: Rule) -> list[Result]:
+    """The rules from a number on, of which nothing can be said after one that was not survived."""
+    reason = f"mend {rule_name(lost)} first."
     return [
-        Result(name, claim_of(first), Kind.BROKEN, finding),
-        *(_unlooked_at(rule, f"mend {name} first.") for rule in others),
+        Result(rule_name(rule), claim_of(rule), Kind.NOT_TESTED, reason=reason)
+        for rule in RULES[first:]
     ]
-
-
-def _unlooked_at(rule: Rule, reason: str) -> Result:
-    return Result(rule_name(rule), claim_of(rule), Kind.NOT_APPLICABLE, reason=reason)

@@ -50,7 +50,7 @@ def judge(result: Result) -> None:
         If it does not apply.
     """
     __tracebackhide__ = True
-    if result.kind is Kind.NOT_APPLICABLE:
+    if result.kind in (Kind.NOT_APPLICABLE, Kind.NOT_TESTED):
         raise unittest.SkipTest(result.reason or result.rule)
     if result.finding is None:
         return

@@ -26,7 +26,17 @@ class NotApplicable:
     reason: str
 
 
-Answer = Finding | NotApplicable | None
+@dataclass(frozen=True, slots=True)
+class NotTested:
+    """Nothing could be found out.
+
+    reason : why, in one sentence.
+    """
+
+    reason: str
+
+
+Answer = Finding | NotApplicable | NotTested | None
 """What a rule says of a planner; None if it is kept."""
 
 
@@ -37,6 +47,7 @@ class Kind(StrEnum):
     BROKEN = "broken"
     WARNING = "warning"
     NOT_APPLICABLE = "not applicable"
+    NOT_TESTED = "not tested"
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +57,7 @@ class Result:
     rule : its name.
     claim : what it asks, in one sentence.
     finding : if it is broken, or a warning.
-    reason : why it does not apply.
+    reason : why it does not apply, or was not tested; of one that is kept, where it was not tested.
     """
 
     rule: str

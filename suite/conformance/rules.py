@@ -1,8 +1,8 @@
 """The contract: all rules, in the order in which they are looked at."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
-from suite.conformance.finding import Finding, Kind, NotApplicable, Result
+from suite.conformance.finding import Finding, Kind, NotApplicable, NotTested, Result
 from suite.conformance.rules_of import (
     budgets,
     declaration,
@@ -91,12 +91,22 @@ def apply(rule: Rule, subject: Subject) -> Result:
     """
     name, claim = rule_name(rule), claim_of(rule)
     hindrance = None if rule in FIRST else _hindrance(subject)
-    found = NotApplicable(f"mend {hindrance} first.") if hindrance else rule(subject)
+    subject.begin_rule()
+    found = NotTested(f"mend {hindrance} first.") if hindrance else rule(subject)
+    if found is None and subject.is_blank:
+        found = NotTested(f"its runs on {_quoted(subject.missed)} end the process.")
+    if isinstance(found, NotTested):
+        return Result(name, claim, Kind.NOT_TESTED, reason=found.reason)
     if isinstance(found, NotApplicable):
         return Result(name, claim, Kind.NOT_APPLICABLE, reason=found.reason)
     if found is None:
-        return Result(name, claim, Kind.KEPT)
+        missed = f"not tested on {_quoted(subject.missed)}" if subject.missed else None
+        return Result(name, claim, Kind.KEPT, reason=missed)
     return Result(name, claim, Kind.WARNING if rule in WARNINGS else Kind.BROKEN, found)
+
+
+def _quoted(names: Iterable[str]) -> str:
+    return ", ".join(f"'{name}'" for name in sorted(names))
 
 
 def examine(subject: Subject) -> Iterator[Result]:

@@ -5,13 +5,14 @@ path is judged. The scene that it is given is its own: the judge has another.
 """
 
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
+from suite.conformance.environment import watch
 from suite.conformance.finding import Answer
 from suite.conformance.small_scenes import SmallScene, asked, small_scenes
 from suite.conformance.surroundings import Surroundings, fingerprint
@@ -72,6 +73,20 @@ class WarmUp:
     error: str | None
     before: Surroundings
     after: Surroundings
+
+
+@dataclass(frozen=True, slots=True)
+class Running:
+    """A run that is about to begin.
+
+    scene : the name of its small scene.
+    ordinary : whether its budget is that of most runs.
+    label : the run in words.
+    """
+
+    scene: str
+    ordinary: bool
+    label: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,15 +168,22 @@ class Subject:
     settings : planner_class.Settings, optional
         Default: the planner's own.
     on_run : callable, optional
-        Told of each run, in words, before it begins.
+        Told of each run before it begins.
+    without : collection of str
+        Names of small scenes that are left out, because a run there has ended the process.
     """
 
     def __init__(
         self,
         planner_class: type[Planner],
         settings: Any = None,
-        on_run: Callable[[str], None] = lambda _: None,
+        on_run: Callable[[Running], None] = lambda _: None,
+        without: Collection[str] = (),
     ) -> None:
+        watch(planner_class)
+        self.without = frozenset(without)
+        self.missed: set[str] = set()
+        self.is_blank = False
         self.planner_class = planner_class
         self.settings = settings
         self._on_run = on_run
@@ -199,14 +221,31 @@ class Subject:
         before.restore()
         return WarmUp(error, before, after)
 
-    @cached_property
+    @property
     def trials(self) -> tuple[Trial, ...]:
         """An ordinary run on each small scene."""
-        return tuple(self.trial(scene) for scene in small_scenes())
+        self.missed |= self.without & {scene.name for scene in small_scenes()}
+        return self.ordinary_trials
+
+    @cached_property
+    def ordinary_trials(self) -> tuple[Trial, ...]:
+        """The same, for rules whose answer does not rest on all of them."""
+        return tuple(self.trial(s) for s in small_scenes() if s.name not in self.without)
 
     def on(self, *names: str) -> Sequence[SmallScene]:
-        """Scenes of the kit by name."""
-        return [scene for scene in small_scenes() if scene.name in names]
+        """Scenes of the kit by name, without those that are left out."""
+        self.missed |= self.without & set(names)
+        left = [s for s in small_scenes() if s.name in names and s.name not in self.without]
+        self.is_blank |= bool(names) and not left
+        return left
+
+    def begin_rule(self) -> None:
+        """Forget what earlier rules have missed.
+
+        ``missed`` are the scenes that the rule asks for and does not get; ``is_blank`` says that
+        one of its questions had no scene left.
+        """
+        self.missed, self.is_blank = set(), False
 
     def trial(
         self,
@@ -247,7 +286,8 @@ class Subject:
         run : callable
             Does it.
         """
-        self._on_run(run_in_words(scene, seed, budget))
+        label = run_in_words(scene, seed, budget)
+        self._on_run(Running(scene.name, budget == self.ordinary, label))
         outer, stream = Surroundings.now(), str(rng.bit_generator.state)
         seed_globals(seed)
         before, drawn = Surroundings.now(), fingerprint(given, query)

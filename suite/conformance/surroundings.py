@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from suite.conformance.environment import set_by_imports, writes
 from suite.scenes.scene import Query, Scene
 
 
@@ -24,6 +25,7 @@ class Surroundings:
     folder: str
     environment: dict[str, str]
     random_state: tuple[str, str]
+    _writes: int
     _python: Any
     _numpy: Any
 
@@ -34,7 +36,7 @@ class Surroundings:
         legacy: Any = np.random.get_state()  # noqa: NPY002
         # The state's array is shortened by repr, so it goes in as a list.
         texts = (_digest(repr(python)), _digest(repr((*legacy[2:], legacy[1].tolist()))))
-        return cls(str(Path.cwd()), dict(os.environ), texts, python, legacy)
+        return cls(str(Path.cwd()), dict(os.environ), texts, writes(), python, legacy)
 
     def restore(self) -> None:
         """Put back what has changed, so that it disturbs nothing else."""
@@ -46,9 +48,10 @@ class Surroundings:
         np.random.set_state(self._numpy)  # noqa: NPY002
 
     def changed_variables(self, after: "Surroundings") -> list[str]:
-        """Names of the variables that are others afterwards."""
+        """Names of the variables that are others afterwards, and not by the import of a library."""
         mine, others = self.environment, after.environment
-        return sorted(k for k in mine.keys() | others.keys() if mine.get(k) != others.get(k))
+        changed = {k for k in mine.keys() | others.keys() if mine.get(k) != others.get(k)}
+        return sorted(changed - set_by_imports(self._writes, after._writes))
 
     def changed_generators(self, after: "Surroundings") -> list[str]:
         """Names of the global generators that were drawn from or seeded."""

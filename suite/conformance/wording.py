@@ -40,8 +40,13 @@ def as_text(planner: str, results: Sequence[Result]) -> str:
 
 
 def _line(result: Result) -> str:
-    words = {Kind.KEPT: "kept", Kind.BROKEN: "BROKEN", Kind.WARNING: "WARNING"}
-    head = f"{words.get(result.kind, '-'):{WIDTH}}{result.rule}"
+    words = {
+        Kind.KEPT: "kept",
+        Kind.BROKEN: "BROKEN",
+        Kind.WARNING: "WARNING",
+        Kind.NOT_TESTED: "not tested",
+    }
+    head = f"{words.get(result.kind, '-'):{WIDTH - 1}} {result.rule}"
     if result.reason is not None:
         return f"{head}: {result.reason}"
     if result.finding is None:
@@ -59,8 +64,9 @@ def _indented(text: str) -> str:
 def summary(planner: str, results: Sequence[Result]) -> str:
     """One line: how many rules are broken, and how many say nothing of it."""
     count = {kind: sum(result.kind is kind for result in results) for kind in Kind}
-    applied = len(results) - count[Kind.NOT_APPLICABLE]
+    applied = len(results) - count[Kind.NOT_APPLICABLE] - count[Kind.NOT_TESTED]
     others = f", {count[Kind.NOT_APPLICABLE]} do not apply" if count[Kind.NOT_APPLICABLE] else ""
+    others += f", {count[Kind.NOT_TESTED]} not tested" if count[Kind.NOT_TESTED] else ""
     warned = f", {count[Kind.WARNING]} warning" if count[Kind.WARNING] else ""
     if count[Kind.BROKEN]:
         return f"{planner}: {count[Kind.BROKEN]} of {applied} rules broken{warned}{others}."

@@ -48,7 +48,8 @@ from typing import Annotated, Any
 
 from msgspec import Meta, Struct
 
-from suite.errors import MatrixError
+from suite import seeds
+from suite.errors import MatrixError, sentence
 from suite.scenes.modifiers import expand_twins
 from suite.typed import MisfitError, typed
 
@@ -63,10 +64,10 @@ _Name = Annotated[str, Meta(min_length=1)]
 MOST_SEEDS = 10**6
 """How many a matrix may count: the cells of more would not fit into memory."""
 
-_Seed = Annotated[int, Meta(ge=0, le=2**63 - 1, description="whole numbers of 0 or more")]
+_Seed = Annotated[int, Meta(ge=0, le=seeds.MOST, description=seeds.WHICH)]
 _Seeds = Annotated[
     Annotated[int, Meta(ge=1, le=MOST_SEEDS)] | Annotated[list[_Seed], Meta(min_length=1)],
-    Meta(description="a number of seeds, 1 or more, or a list of them"),
+    Meta(description=f"a number of seeds, 1 to {MOST_SEEDS}, or a list of {seeds.WHICH}"),
 ]
 _SceneName = Annotated[_Name, Meta(description="the name or the file of a scene")]
 
@@ -203,7 +204,7 @@ def _read_toml(path: Path) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         raise MatrixError(f"{path.name}: is not UTF-8 text (byte {error.start}).") from error
     except tomllib.TOMLDecodeError as error:
-        raise MatrixError(f"{path.name}: not TOML: {error}.") from error
+        raise MatrixError(f"{path.name}: not TOML: {sentence(error)}") from error
     except (ValueError, RecursionError) as error:  # numbers too long, or nested too deep
         raise MatrixError(f"{path.name}: can't be read as TOML ({error}).") from error
 
@@ -221,19 +222,19 @@ def outline(name: str) -> dict[str, Any]:
     """
     _, file = read_matrix_file(matrix_file(name))
     entries = [SceneEntry(e) if isinstance(e, str) else e for e in file.scenes]
-    seeds = {twin: e.seeds or file.seeds for e in entries for twin in expand_twins(e.scene)}
-    runs = sum(_count(own) * _worlds(file, scene) for scene, own in seeds.items())
+    each = {twin: e.seeds or file.seeds for e in entries for twin in expand_twins(e.scene)}
+    runs = sum(_count(own) * _worlds(file, scene) for scene, own in each.items())
     return {
         "description": file.description,
-        "scenes": len(seeds),
+        "scenes": len(each),
         "planners": len(file.planner),
         "seeds": _count(file.seeds),
         "runs": runs * len(file.planner),
     }
 
 
-def _count(seeds: int | list[int]) -> int:
-    return seeds if isinstance(seeds, int) else len(seeds)
+def _count(own: int | list[int]) -> int:
+    return own if isinstance(own, int) else len(own)
 
 
 def _worlds(file: MatrixFile, scene: str) -> int:

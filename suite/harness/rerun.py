@@ -9,6 +9,7 @@ import pandas as pd
 import shapely
 from numpy.typing import NDArray
 
+from suite.errors import sentence
 from suite.store.read import read_paths, read_runs
 from suite.store.record import RunRecord
 
@@ -71,7 +72,7 @@ def _in_words(
             "its budget is counted, so it should be the same: another machine, version or plugin?"
         )
     )
-    return f"not the same: {ends}{costs}{apart}; {why}."
+    return f"not the same: {ends}{costs}{apart}; {sentence(why)}"
 
 
 def same_path(one: NDArray[np.float64] | None, other: NDArray[np.float64] | None) -> bool:

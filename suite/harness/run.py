@@ -67,7 +67,8 @@ class Progress:
     wanted : runs of the matrix.
     done : of these in the store, those of earlier sessions included.
     found : of these done in earlier sessions.
-    failed : runs of this session that ended in one of PlanStatus.FAILURES.
+    found_failed : of those found, the ones that ended in one of PlanStatus.FAILURES.
+    failed : runs of this session that ended so.
     running : labels of the runs that were handed out and are not back.
     last : the row that came last.
     left : runs that still go on elsewhere after an interruption; their rows are dropped.
@@ -81,6 +82,7 @@ class Progress:
     wanted: int
     done: int
     found: int
+    found_failed: int = 0
     failed: int = 0
     running: list[str] = field(default_factory=list)
     last: RunRecord | None = None
@@ -105,6 +107,7 @@ class Progress:
             tally.wanted += 1
             if cell.key not in again:
                 tally.count(there[cell.key])
+                progress.found_failed += there[cell.key] in PlanStatus.FAILURES
         return progress
 
     def count(self, record: RunRecord) -> None:
@@ -117,8 +120,10 @@ class Progress:
     def summary(self) -> str:
         """One line that says how the matrix ended."""
         ran = self.done - self.found
-        text = f"{self.done} of {self.wanted} runs are in the store: {self.found} were there, "
-        return f"{text}{ran} ran now, {self.failed} of these failed.{self._of_the_clock()}"
+        old = f", {self.found_failed} of these failed;" if self.found_failed else ","
+        text = f"{self.done} of {self.wanted} runs are in the store: {self.found} were there{old} "
+        again = " To run failed ones again, give --only-failed." if self.found_failed else ""
+        return f"{text}{ran} ran now, {self.failed} of these failed.{again}{self._of_the_clock()}"
 
     def _of_the_clock(self) -> str:
         """What a busy machine did to the rows, if it did anything."""

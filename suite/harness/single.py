@@ -13,6 +13,7 @@ from suite.plugins.discovery import planner_info
 from suite.plugins.settings import make_settings
 from suite.scenes.exact import shortest_path
 from suite.scenes.scene import scene_fingerprint
+from suite.seeds import check_seed
 from suite.simulation.record import from_data
 from suite.simulation.run import Simulation
 from suite.simulation.settings import world_settings
@@ -45,7 +46,7 @@ def cell_for(
     planner : str
         Name of the plugin.
     seed : int
-        0 or more.
+        0 to 2^63 - 1.
     query : str, optional
         Default: the first of the scene.
     settings : mapping, optional
@@ -60,6 +61,7 @@ def cell_for(
     KbgaBenchError
         If any of it can't be used; nothing has been run then.
     """
+    check_seed(seed)
     scene = prepared_scene(source)
     wanted = scene.query(query)
     found = planner_class(planner)

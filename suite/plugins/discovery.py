@@ -14,12 +14,14 @@ import dataclasses
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
 
 from suite.errors import PluginError, did_you_mean
 from suite.planner import Abilities, Planner
 from suite.plugins.code_hash import OURS, code_hash, files_of_entry_point, module_of
 from suite.plugins.from_file import NamedPlugin, named_plugins
 from suite.plugins.validation import flaw
+from suite.plugins.version_files import present_version_files, refuse_unread, version_files
 
 GROUP = "kbga_bench.planners"
 
@@ -138,7 +140,8 @@ def _distribution(source: Source) -> tuple[str, str]:
     if module_of(source).split(".")[0] in OURS:
         return name, version
     # Whoever works on a plugin installs it again and again with one version.
-    return name, f"{version} {code_hash(files_of_entry_point(source))}"
+    code = files_of_entry_point(source)
+    return name, f"{version} {code_hash(code | present_version_files(code))}"
 
 
 def _load(name: str, sources: Sequence[Source]) -> type[Planner]:
@@ -147,6 +150,8 @@ def _load(name: str, sources: Sequence[Source]) -> type[Planner]:
         owners = " and ".join(_distribution(source)[0] for source in sources)
         raise PluginError(f"{owners} both declare it. {_one_of(sources)}")
     place = _place(sources[0])
+    code = _code_to_read(sources[0])
+    version_files(code)  # raises, if one is missing, before the planner itself meets that
     try:
         # Other people's code: whatever its import raises must not end the listing.
         found = sources[0].load()
@@ -162,8 +167,17 @@ def _load(name: str, sources: Sequence[Source]) -> type[Planner]:
             f"{place} calls itself {getattr(found, 'name', None)!r}. "
             "The entry point and the attribute `name` must be the same."
         )
+    if code:
+        refuse_unread(found, code)
     planner: type[Planner] = found
     return planner
+
+
+def _code_to_read(source: Source) -> set[Path]:
+    """The code that may name data files; a file of --plugin has been read when it was named."""
+    if isinstance(source, NamedPlugin) or module_of(source).split(".")[0] in OURS:
+        return set()
+    return files_of_entry_point(source)
 
 
 def _place(source: Source) -> str:

@@ -6,9 +6,7 @@ planner is a hash of its code (:mod:`suite.plugins.code_hash`), so that changed 
 that changes while a matrix runs is refused from then on.
 """
 
-import hashlib
 import importlib
-import importlib.util
 import json
 import os
 import sys
@@ -21,9 +19,10 @@ from typing import Any
 from suite.errors import PluginError
 from suite.planner import Planner
 from suite.plugins.code_hash import code_hash, files_beside, files_of_package
+from suite.plugins.own_modules import VARIABLE, import_file, in_words
 from suite.plugins.validation import flaw
+from suite.plugins.version_files import refuse_unread, version_files
 
-VARIABLE = "KBGA_BENCH_PLUGINS"
 HOW = "Give path/to/file.py, path/to/file.py:Class, or module:Class."
 
 
@@ -33,13 +32,15 @@ class NamedPlugin:
 
     name : what the class calls itself.
     reference : "file.py:Class" with the whole path, or "module:Class".
-    folder : where the modules beside it are looked for, after all other places.
-    version : of the code, "sha256-" and the first digits.
+    folder : where a module is looked for, after all other places.
+    code : the hash of its code.
+    version : "sha256-" and the first digits, of code and data.
     """
 
     name: str
     reference: str
     folder: str
+    code: str
     version: str
 
     @property
@@ -57,10 +58,10 @@ class NamedPlugin:
             If the code is not what it was when the plugin was named.
         """
         place, _, kind = self.reference.rpartition(":")
-        module = _imported(place, self.folder)
-        if _version(module) != self.version:
+        code = _code(place, self.folder)
+        if (code_hash(code), _version(code)) != (self.code, self.version):
             raise PluginError(f"{place} changed since the command began. Give it again.")
-        return getattr(module, kind)
+        return getattr(_imported(place, self.code), kind)
 
 
 def name_plugins(references: Iterable[str]) -> list[NamedPlugin]:
@@ -96,18 +97,22 @@ def named_plugins() -> list[NamedPlugin]:
 
 def _resolved(reference: str) -> list[NamedPlugin]:
     place, kind = _parsed(reference)
-    folder = Path(place).parent if place.endswith(".py") else Path.cwd()
+    folder = str(Path.cwd())
     try:
-        module = _imported(place, str(folder))
-        version = _version(module)
+        code = _code(place, folder)
+        hashed, version = code_hash(code), _version(code)
+        module = _imported(place, hashed)
+    except PluginError as error:
+        raise PluginError(f"--plugin {reference}: {error}") from error
     except (Exception, SystemExit) as error:  # other people's code: its import may raise anything
-        raise PluginError(f"--plugin {reference}: {type(error).__name__}: {error}") from error
+        raise PluginError(f"--plugin {reference}: {in_words(error)}") from error
     classes = _planners_of(module) if kind is None else [kind]
     if not classes:
         raise PluginError(f"--plugin {reference}: no subclass of suite.planner.Planner in it.")
+    names = [_checked_name(reference, module, each, code) for each in classes]
     return [
-        NamedPlugin(_checked_name(reference, module, each), f"{place}:{each}", str(folder), version)
-        for each in classes
+        NamedPlugin(name, f"{place}:{each}", folder, hashed, version)
+        for name, each in zip(names, classes, strict=True)
     ]
 
 
@@ -127,37 +132,36 @@ def _parsed(reference: str) -> tuple[str, str | None]:
     return str(path), kind
 
 
-def _imported(place: str, folder: str) -> ModuleType:
-    """Import a module or a file; a file as it is now is imported once."""
-    if folder not in sys.path:
-        sys.path.append(folder)
-    if not place.endswith(".py"):
-        return importlib.import_module(place)
-    # Not its bare name: the file of a user may be called like anybody's module.
-    content = place.encode() + Path(place).read_bytes()
-    name = f"{Path(place).stem}_{hashlib.sha256(content).hexdigest()[:8]}"
-    if name in sys.modules:
-        return sys.modules[name]
-    spec = importlib.util.spec_from_file_location(name, place)
-    if spec is None or spec.loader is None:
-        raise PluginError(f"{place} is no Python file.")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # dataclasses and pickles look it up there
-    try:
-        spec.loader.exec_module(module)
-    except BaseException:
-        del sys.modules[name]
-        raise
+def _imported(place: str, hashed: str) -> ModuleType:
+    """Import a module, or a file whose code has that hash; each once."""
+    if place.endswith(".py"):
+        return import_file(Path(place), hashed)
+    module = importlib.import_module(place)
+    if module.__file__ is None:
+        raise PluginError(f"{place} is a folder without code. {HOW}")
     return module
 
 
-def _version(module: ModuleType) -> str:
-    """Hash of a module with what it imports from beside it, or of the package that it is in."""
-    if module.__file__ is None:
-        raise PluginError(f"{module.__name__} is a folder without code. {HOW}")
-    if module.__package__:
-        return code_hash(files_of_package(module.__package__))
-    return code_hash(files_beside(Path(module.__file__)))
+def _version(code: Iterable[Path]) -> str:
+    """Hash of code and of the data files that it names."""
+    return code_hash({*code, *version_files(code)})
+
+
+def _code(place: str, folder: str) -> set[Path]:
+    """The code of a file with what it imports from beside it, of a module so, or of its package."""
+    if place.endswith(".py"):
+        return files_beside(Path(place))
+    if folder not in sys.path:
+        sys.path.append(folder)
+    return _files_of_module(place)
+
+
+def _files_of_module(module: str) -> set[Path]:
+    files = files_of_package(module)
+    is_package = "." in module or any(file.name == "__init__.py" for file in files)
+    if is_package:
+        return files
+    return {other for file in files if file.is_file() for other in files_beside(file)}
 
 
 def _planners_of(module: ModuleType) -> list[str]:
@@ -172,13 +176,14 @@ def _planners_of(module: ModuleType) -> list[str]:
     ]
 
 
-def _checked_name(reference: str, module: ModuleType, kind: str) -> str:
+def _checked_name(reference: str, module: ModuleType, kind: str, code: Iterable[Path]) -> str:
     found = getattr(module, kind, None)
     if found is None:
         raise PluginError(f"--plugin {reference}: there is no class {kind} in {module.__file__}.")
     wrong = flaw(found)
     if wrong is not None:
         raise PluginError(f"--plugin {reference}: {kind} {wrong}")
+    refuse_unread(found, code)
     name = getattr(found, "name", None)
     if not isinstance(name, str):
         raise PluginError(f"--plugin {reference}: {kind} has no `name`. Give it one, a string.")

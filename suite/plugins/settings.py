@@ -10,7 +10,7 @@ from typing import Any
 
 import msgspec
 
-from suite.errors import ContractError, PluginError, did_you_mean
+from suite.errors import ContractError, PluginError, did_you_mean, sentence
 from suite.planner import Planner
 from suite.typed import in_words
 
@@ -64,7 +64,8 @@ def make_settings(planner_class: type[Planner], mapping: Mapping[str, Any]) -> A
                 f"{owner}: {key} is {value!r}. It must be {in_words(wanted[key])}."
             ) from error
         except TypeError as error:
-            raise PluginError(f"{owner}: the type of {key} can't be read: {error}.") from error
+            why = sentence(error)
+            raise PluginError(f"{owner}: the type of {key} can't be read: {why}") from error
     try:
         return planner_class.Settings(**values)
     except (TypeError, ValueError, ContractError) as error:
@@ -80,7 +81,8 @@ def _field_types(planner_class: type[Planner]) -> dict[str, Any]:
         hints = typing.get_type_hints(settings)
     except NameError as error:
         raise PluginError(
-            f"{planner_class.name}: the types of {settings.__name__} can't be read: {error}."
+            f"{planner_class.name}: the types of {settings.__name__} can't be read: "
+            f"{sentence(error)}"
         ) from error
     return {f.name: hints[f.name] for f in dataclasses.fields(settings) if f.init}
 

@@ -11,10 +11,7 @@ from numbers import Integral
 from typing import Any
 
 from suite.errors import ContractError
-from suite.planner import Improvement, Plan, PlanStatus, Recorder
-
-LARGEST_COUNT = 2**63 - 1
-"""What a column of a store can hold."""
+from suite.planner import LARGEST_COUNT, Improvement, Plan, PlanStatus, Recorder
 
 
 def plain_plan(returned: Any) -> Plan:

@@ -12,6 +12,8 @@ import pytest
 import shapely
 
 from suite.cli import main
+from suite.errors import KbgaBenchError
+from suite.harness.single import cell_for
 from suite.planner import PlanStatus
 from suite.scenes.catalogue import aligned_names, load_scene
 from suite.scenes.dynamics import Dynamics, constant_speed
@@ -80,7 +82,10 @@ def test_a_plugin_that_cannot_be_imported_is_listed_with_the_reason(kbga_bench, 
     broken = next(planner for planner in planners if planner["name"] == "broken")
     assert not broken["available"]
     assert "no_such_module" in broken["reason"]
-    assert "wanderer" in kbga_bench("list", "planners").out
+    said = kbga_bench("list", "planners").out
+    assert "wanderer" in said
+    assert "unavailable: ModuleNotFoundError" in " ".join(said.split())
+    assert "unavailable: unavailable" not in said
 
 
 @pytest.mark.parametrize("what", ["scenes", "planners", "matrices"])
@@ -343,8 +348,37 @@ def test_run_keeps_rows_and_says_how_it_ended(kbga_bench, matrix_file, tmp_path)
     assert "4 of 4 runs are in the store: 0 were there, 4 ran now, 2 of these failed." in (done.out)
     assert "error: RuntimeError: no luck today" in done.err
     again = kbga_bench("run", matrix_file("wanderer", "raises"), "--store", store)
-    assert "4 were there, 0 ran now" in again.out
+    assert "4 were there, 2 of these failed; 0 ran now, 0 of these failed." in again.out
+    assert "give --only-failed" in again.out
     assert len(read_runs(store)) == 4
+
+
+@pytest.mark.parametrize("seed", [2**63, 2**64, -1])
+def test_a_seed_that_no_row_can_have_is_refused_before_anything_is_run(
+    kbga_bench, error_of, hostile, wall_file, tmp_path, seed
+):
+    matrix, store = tmp_path / "m.toml", tmp_path / "s.db"
+    matrix.write_text(
+        f'scenes = ["{wall_file}"]\nseeds = [{seed}]\n[[planner]]\nplanner = "wanderer"\n'
+    )
+    message = error_of("run", matrix, "--store", store)
+    assert f"{seed}. Give whole numbers from 0 to 9223372036854775807." in message
+    assert not store.exists()
+    error_of("plan", wall_file, "--planner", "wanderer", f"--seed={seed}")
+    with pytest.raises(KbgaBenchError, match=f"the seed is {seed}. Seeds are whole numbers from"):
+        cell_for(str(wall_file), "wanderer", seed=seed)
+
+
+def test_the_largest_seed_is_run_and_found_again(kbga_bench, hostile, wall_file, tmp_path):
+    matrix, store = tmp_path / "m.toml", tmp_path / "s.db"
+    matrix.write_text(
+        f'scenes = ["{wall_file}"]\nseeds = [{2**63 - 1}]\n[[planner]]\nplanner = "wanderer"\n'
+    )
+    kbga_bench("run", matrix, "--store", store)
+    assert list(read_runs(store)["seed"]) == [2**63 - 1]
+    again = kbga_bench("rerun", store, f"wall/wanderer/{2**63 - 1}")
+    assert "the same: solved" in again.out
+    assert "no row is called" in kbga_bench("rerun", store, f"wall/wanderer/{2**63}", code=2).err
 
 
 @pytest.fixture(scope="module")
@@ -534,7 +568,7 @@ def test_stores_are_merged_and_conflicts_are_named(kbga_bench, matrix_file, tmp_
     kbga_bench("run", matrix_file("raises"), "--store", two)
     said = kbga_bench("run", matrix_file("raises"), "--store", one, "--merge", two).out
     assert "two.db: 2 rows added, 0 were there with the same outcome, 0 with another one." in said
-    assert "2 were there, 0 ran now" in said
+    assert "2 were there, 2 of these failed; 0 ran now" in said
     with closing(sqlite3.connect(two)) as connection, connection:
         connection.execute("UPDATE runs SET status = 'solved' WHERE seed = 0")
     said = kbga_bench("merge", one, two, code=1).out

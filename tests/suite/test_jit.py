@@ -51,6 +51,31 @@ def test_a_change_in_a_file_reaches_the_machine_code_of_its_callers_in_others(tw
     assert [run(), run()] == ["11 0", "11 1"]
 
 
+@pytest.mark.parametrize(("after_s", "told"), [(0.0, 1), (1e9, 0)])
+def test_compiling_that_takes_its_time_is_told_once_and_beside_the_output(two_files, after_s, told):
+    """By a process and by those that it starts; not when all is compiled."""
+    code = (
+        "import subprocess, sys; import suite.jit as jit; jit.TELL_S = float(sys.argv[1])\n"
+        "from caller import caller; from suite.geometry.called import called\n"
+        "print(caller(1), called(1.5), flush=True)\n"
+        "sys.argv[2:] and subprocess.run([sys.executable, '-c', sys.argv[2], '0'])"
+    )
+    again = code.replace("1.5", "1j")
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(two_files / "c"), "NUMBA_DISABLE_JIT": "0"}
+    environment = {**environment, "PYTHONPATH": str(two_files)}
+    command = [sys.executable, "-c", code, str(after_s), *([again] if told else [])]
+
+    def run():
+        return subprocess.run(
+            command, env=environment, cwd=two_files, capture_output=True, text=True, check=True
+        )
+
+    cold, warm = run(), run()
+    assert cold.stdout.splitlines() == warm.stdout.splitlines() == ["2 2.5", "2 (1+1j)"][: 1 + told]
+    assert cold.stderr.count("compiling the kernels") == told
+    assert "compiling the kernels" not in warm.stderr
+
+
 def test_old_machine_code_goes_when_new_is_made_and_not_before(two_files):
     kept = two_files / "cache" / "kbga-bench"
     for number in range(9):

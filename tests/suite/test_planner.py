@@ -5,6 +5,7 @@
 import pytest
 import shapely
 
+from suite.errors import ContractError
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, refusal
 from suite.scenes.scene import make_scene
 
@@ -71,3 +72,10 @@ def test_where_a_limit_is_kept_the_planner_has_the_last_word():
 
     assert why(OnMondays("checks"), checks=1) == "not on a Monday"
     assert why(OnMondays("checks")) == "not on a Monday"
+
+
+@pytest.mark.parametrize("name", ["generations", "checks"])
+def test_a_budget_that_no_row_can_hold_is_refused(name):
+    Budget(**{name: 2**63 - 1})
+    with pytest.raises(ContractError, match="It must be 9223372036854775807 or less"):
+        Budget(**{name: 2**63})

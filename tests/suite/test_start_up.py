@@ -41,10 +41,12 @@ def test_the_command_answers_soon(printers_s, most, arguments):
 def loaded_by(code: str, *arguments: str) -> set[str]:
     """The heavy libraries that a process has loaded when it ends."""
     heavy = "{'numba', 'shapely', 'numpy', 'scipy', 'pandas', 'matplotlib', 'ompl'}"
-    watch = f"import atexit, sys\natexit.register(lambda: print(*{heavy} & {{*sys.modules}}))\n"
+    # On standard error: standard output is the command's, to the end.
+    tell = f"print('', *{heavy} & {{*sys.modules}}, file=sys.stderr)"
+    watch = f"import atexit, sys\natexit.register(lambda: {tell})\n"
     command = [sys.executable, "-c", watch + code, *arguments]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
-    return set(done.stdout.splitlines()[-1].split())
+    return set(done.stderr.splitlines()[-1].split())
 
 
 def test_help_loads_no_library_of_numbers():

@@ -40,7 +40,8 @@ def same_path_in_another_process(subject: Subject) -> Answer:
     if found is not None:
         return found if isinstance(found, NotApplicable) else NotApplicable("it keeps state.")
     try:
-        request = pickle.dumps((subject.planner_class, subject.settings, SCENES))
+        names = [scene.name for scene in subject.on(*SCENES)]
+        request = pickle.dumps((subject.planner_class, subject.settings, names))
     except Exception:  # pickle raises whatever a class's own hooks raise
         return NOT_FOUND
     try:
@@ -52,7 +53,7 @@ def same_path_in_another_process(subject: Subject) -> Answer:
     there: dict[str, Any] | None = pickle.loads(done.stdout)
     if there is None:
         return NOT_FOUND
-    here = {trial.scene.name: trial for trial in subject.trials}
+    here = {trial.scene.name: trial for trial in subject.ordinary_trials}
     for name, outcome in there.items():
         if outcome != here[name].outcome:
             what = difference(here[name].outcome, outcome)

@@ -89,7 +89,7 @@ def keeps_no_state(subject: Subject) -> Answer:
     for scene in subject.on("enclosed goal", *VARIED):
         subject.trial(scene, seed=SEED + 1, planner=used)
     # What a module or a class keeps is met by every run but the first.
-    first = {trial.scene.name: trial for trial in subject.trials}
+    first = {trial.scene.name: trial for trial in subject.ordinary_trials}
     for scene in subject.on(*VARIED):
         fresh, again = first[scene.name], subject.trial(scene, planner=used)
         if fresh.outcome != again.outcome:
@@ -107,7 +107,7 @@ def _hindrance(subject: Subject) -> NotApplicable | None:
     """Why repeated runs say nothing of this planner."""
     if subject.is_timed and not subject.planner_class.abilities.deterministic:
         return TIMED
-    return UNPLANNED if any(trial.plan is None for trial in subject.trials) else None
+    return UNPLANNED if any(trial.plan is None for trial in subject.ordinary_trials) else None
 
 
 def difference(one: tuple[Any, ...], other: tuple[Any, ...]) -> str:

@@ -6,8 +6,8 @@ Whoever plans afresh at each update is held to the rules about runs, and that is
 from collections.abc import Iterable
 from functools import wraps
 
-from suite.conformance.drive import drive, ordinary_drive
-from suite.conformance.finding import Answer, Finding, NotApplicable
+from suite.conformance.drive import STEPS, drive, ordinary_drive
+from suite.conformance.finding import Answer, Finding, NotApplicable, NotTested
 from suite.conformance.rules_of.budgets import (
     ATTEMPTS,
     CHECKS,
@@ -24,6 +24,7 @@ from suite.conformance.surroundings import Surroundings
 from suite.planner import Budget, Planner, PlanStatus
 
 AFRESH = NotApplicable("it has no replanner of its own.")
+UNTESTED = NotTested("a drive ends the process: mend that first.")
 UNPLANNED = NotApplicable("not all updates end with a plan.")
 
 
@@ -34,6 +35,8 @@ def _for_replanners(rule: Rule) -> Rule:
     def applied(subject: Subject) -> Answer:
         if subject.planner_class.replanner is Planner.replanner:
             return AFRESH
+        if subject.without & {step.small.name for step in STEPS}:
+            return UNTESTED
         refused = _refused(subject)
         return NotApplicable(f"refused: {refused}") if refused else rule(subject)
 
@@ -42,7 +45,7 @@ def _for_replanners(rule: Rule) -> Rule:
 
 def _refused(subject: Subject) -> str | None:
     """Why a drive is not begun, in words; an exception is told by the rules about runs."""
-    trial = subject.trials[0]
+    trial = subject.ordinary_trials[0]
     return str(trial.run.refusal) if trial.run.refusal is not None else trial.run.error
 
 

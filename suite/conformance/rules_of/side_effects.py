@@ -39,7 +39,7 @@ def leaves_the_folder_alone(subject: Subject) -> Answer:
 
 
 def leaves_the_environment_alone(subject: Subject) -> Answer:
-    """A run changes no environment variable."""
+    """A run changes no environment variable, but by the import of a library."""
     return _around(
         subject,
         lambda before, after: _told("changed: ", before.changed_variables(after)),

@@ -17,6 +17,7 @@ from suite.errors import PluginError
 BROKEN = Path(__file__).parents[1] / "conformance" / "broken_planners.py"
 HANGING = """
 import ctypes, os, time
+from dataclasses import replace
 from broken_planners import Detours
 
 class HangsAtTheEnd(Detours):
@@ -31,6 +32,15 @@ class HangsInWarmUp(Detours):
 
     def warm_up(self):
         os._exit(3)
+
+class LeavesASpecialCase(Detours):
+    name = "dies-of-few-checks"
+    abilities = replace(Detours.abilities, budgets=frozenset({"generations", "checks"}))
+
+    def plan(self, scene, query, budget, rng, recorder):
+        if budget.checks is not None and budget.generations is None:
+            os._exit(5)
+        return super().plan(scene, query, budget, rng, recorder)
 
 class Crashes(Detours):
     name = "crashes"
@@ -82,14 +92,24 @@ def test_a_broken_rule_is_named_and_how_to_mend_it_and_the_code_is_1():
 
 
 def test_a_planner_that_hangs_is_killed_and_the_run_is_named(hanging):
-    arguments = ("check", "hangs-at-the-end", "--plugin", hanging, "--limit-s", 5)
+    arguments = ("check", "hangs-at-the-end", "--plugin", hanging, "--limit-s", 10)
     done = kbga_bench(*arguments, code=1)
     assert "BROKEN    runs-end-without-an-exception\n" in done.stdout
-    assert "on 'seam' with seed 1 and Budget(generations=10): it did not end within 5 s" in (
+    assert "on 'seam' with seed 1 and Budget(generations=10): it did not end within 10 s" in (
         done.stdout
     )
+    # The others are tested where they can be, and say where they were not.
+    assert "kept      path-is-free: not tested on 'seam'\n" in done.stdout
+    assert "kept      same-seed-same-path\n" in done.stdout
+    assert "hangs-at-the-end: 1 of 33 rules broken, 6 do not apply.\n" in done.stdout
     left = [p for p in psutil.process_iter(["cmdline"]) if str(hanging) in str(p.info["cmdline"])]
     assert left == []
+
+
+def test_a_budget_that_ends_the_process_breaks_its_rule_and_no_other(hanging):
+    done = kbga_bench("check", "dies-of-few-checks", "--plugin", hanging, code=1)
+    assert "BROKEN    keeps-checks\n" in done.stdout
+    assert "dies-of-few-checks: 1 of 31 rules broken, 8 do not apply.\n" in done.stdout
 
 
 @pytest.mark.parametrize(
@@ -104,6 +124,8 @@ def test_a_planner_that_dies_is_named_with_its_end(hanging, planner, rule, end):
     assert f"BROKEN    {rule}\n" in done.stdout
     assert end in done.stdout
     assert "standard output" not in done.stdout
+    assert f"not tested same-seed-same-path: mend {rule} first.\n" in done.stdout
+    assert "kept      same-seed-same-path" not in done.stdout
 
 
 def test_what_cannot_be_loaded_or_set_is_an_error_and_no_broken_rule(hostile):
