@@ -1,9 +1,6 @@
-import json
 import multiprocessing
 import os
-import subprocess
 import sys
-import time
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
 from types import SimpleNamespace
 
@@ -25,45 +22,10 @@ from suite.planner import PlanStatus
 from suite.store.read import read_paths, read_runs, read_sessions
 from suite.store.write import open_store
 from tests.suite.commands import in_own_process
+from tests.suite.harness.cluster.dask_on_loopback import Cluster, wait_until
 from tests.suite.harness.records import make_cell
 
-START_S = 60.0
 SEEDS = 6
-
-
-class Cluster:
-    """A dask scheduler and workers: real processes, on loopback, on free ports."""
-
-    def __init__(self, folder, env):
-        self.env = env
-        file = folder / "scheduler.json"
-        self.processes = [self._start("scheduler", "--port", "0", "--scheduler-file", str(file))]
-        wait_until(lambda: file.exists() and file.stat().st_size > 0)
-        self.join = ["worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny"]
-        self.address = json.loads(file.read_text())["address"]
-
-    def add_worker(self):
-        self.processes.append(self._start(*self.join, "--local-directory", self.env["TMPDIR"]))
-        return psutil.Process(self.processes[-1].pid)
-
-    def _start(self, kind, *arguments):
-        command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", *arguments]
-        return subprocess.Popen(
-            [*command, "--host", "127.0.0.1", "--no-dashboard"],
-            env=self.env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
-
-    def close(self):
-        for process in reversed(self.processes):
-            process.kill()
-            process.wait()
-
-
-def wait_until(ready, patience_s=START_S):
-    deadline = time.monotonic() + patience_s
-    while not ready() and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert ready()
 
 
 @pytest.fixture
