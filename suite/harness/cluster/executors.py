@@ -46,6 +46,9 @@ CONNECT_S = 10.0
 FIRST_WORKER_S = 10.0
 """How long its first worker may take to be there."""
 
+ANSWER_S = 60.0
+"""How long the workers may take to say what they are: one that is stopped never does."""
+
 END_S = 5.0
 """How long to wait for killed runs to be gone."""
 
@@ -102,9 +105,15 @@ class DaskExecutor(Executor):
         Raises
         ------
         HarnessError
-            If a worker can do no runs.
+            If a worker can do no runs, or does not answer.
         """
-        answers = self._client.run(describe, session, on_error="return")
+        try:
+            answers = self._ask(describe, session, "return", ANSWER_S)
+        except TimeoutError as error:
+            raise HarnessError(
+                f"{self.address}: {self._longest_silent()} does not answer within {ANSWER_S:g} s. "
+                "Let it go on if it is stopped, or end it."
+            ) from error
         machines = {}
         for worker, answer in answers.items():
             if isinstance(answer, Exception):
@@ -129,15 +138,30 @@ class DaskExecutor(Executor):
         Raises
         ------
         OSError, RuntimeError
-            If the scheduler is gone: nobody knows what goes on.
+            If the scheduler is gone, or a worker does not answer: nobody knows what goes on.
         """
         deadline = time.monotonic() + END_S
         while True:
-            answers = self._client.run(end_session, session, on_error="ignore")
+            answers = self._ask(end_session, session, "ignore", END_S)
             left = sum(answers.values())
             if not left or time.monotonic() > deadline:
                 return left
             time.sleep(POLL_S)
+
+    def _ask(
+        self, question: Callable[[Session], T], session: Session, on_error: str, limit_s: float
+    ) -> dict[str, Any]:
+        """What each worker answers, by its address; a TimeoutError if one does not."""
+        # `run` hands on what it does not know, to `Client.sync`.
+        answers: dict[str, Any] = self._client.run(
+            question, session, on_error=on_error, callback_timeout=limit_s
+        )
+        return answers
+
+    def _longest_silent(self) -> str:
+        """The worker that was last heard of before all others."""
+        workers = self._client.scheduler_info(n_workers=-1)["workers"]
+        return f"the worker {min(workers, key=lambda worker: workers[worker]['last_seen'])}"
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Leave the cluster, which goes on."""
@@ -246,7 +270,8 @@ class Crew:
             try:
                 return self.executor.end(self.session)
             except (OSError, RuntimeError):
-                # A scheduler that is gone; its workers leave too, and their runs with them.
+                # A scheduler that is gone; its workers leave too, and their runs with them. Or a
+                # worker that stands still; the others have heard it.
                 return len(futures)
         deadline = time.monotonic() + ABANDON_S
         while started and (self.session is None or time.monotonic() < deadline):

@@ -1,5 +1,6 @@
 """A dask scheduler and workers: real processes, on loopback, on free ports."""
 
+import contextlib
 import json
 import os
 import shutil
@@ -12,7 +13,8 @@ import psutil
 
 from suite.jit import cache_folder
 
-START_S = 60.0
+START_S = 300.0
+"""What comes at all comes sooner, on a machine however busy."""
 
 LOOPBACK = ("--host", "127.0.0.1", "--dashboard-address", "127.0.0.1:0", "--no-dashboard")
 """Without the second one, what is left of the dashboard listens on all interfaces."""
@@ -53,8 +55,7 @@ class Cluster:
 
     def close(self):
         for process in reversed(self.processes):
-            process.kill()
-            process.wait()
+            end(process)
 
 
 class Machine:
@@ -118,17 +119,26 @@ def wait_until(ready, patience_s=START_S):
     assert ready()
 
 
-def listening(processes):
+def listening(pids):
     """(address, port) of all that living processes and their descendants listen on."""
     found = set()
-    for process in processes:
-        if process.poll() is not None:
-            continue
-        above = psutil.Process(process.pid)
+    for pid in filter(psutil.pid_exists, pids):
+        above = psutil.Process(pid)
         for one in (above, *above.children(recursive=True)):
-            found |= {
-                (c.laddr.ip, c.laddr.port)
-                for c in one.net_connections("inet")
-                if c.status == psutil.CONN_LISTEN
-            }
+            with contextlib.suppress(psutil.NoSuchProcess):
+                found |= {
+                    (c.laddr.ip, c.laddr.port)
+                    for c in one.net_connections("inet")
+                    if c.status == psutil.CONN_LISTEN
+                }
     return found
+
+
+def end(process):
+    """End a process and all that descends from it, by their ids."""
+    with contextlib.suppress(psutil.NoSuchProcess):
+        above = psutil.Process(process.pid)
+        for one in (*above.children(recursive=True), above):
+            with contextlib.suppress(psutil.NoSuchProcess):
+                one.kill()
+    process.wait()

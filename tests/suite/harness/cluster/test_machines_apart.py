@@ -8,14 +8,11 @@ import os
 
 import numpy as np
 import pytest
-import shapely
 
 from suite.harness.cluster.executors import connect
 from suite.harness.matrix import load_matrix
 from suite.harness.run import run_matrix
 from suite.plugins.from_file import name_plugins
-from suite.scenes.geojson import write_scene
-from suite.scenes.scene import make_scene
 from suite.store.read import read_paths, read_runs
 from suite.store.write import open_store
 from tests.suite.harness.cluster.dask_on_loopback import (
@@ -25,57 +22,15 @@ from tests.suite.harness.cluster.dask_on_loopback import (
     listening,
     wait_until,
 )
+from tests.suite.harness.cluster.user_folder import write_user_folder
 
 SEEDS = 8
-
-PLUGIN = '''
-import os
-from pathlib import Path
-
-import numba
-import numpy as np
-
-from detours import length
-from suite.planner import Abilities, Plan, Planner, PlanStatus
-
-
-@numba.njit(cache=True)
-def bend(x):
-    return 3.0 + x
-
-
-class Lucky(Planner):
-    """Goes by a random place, above the block."""
-
-    name = "lucky"
-    abilities = Abilities(budgets=frozenset({"generations"}))
-
-    def warm_up(self):
-        bend(0.5)
-
-    def plan(self, scene, query, budget, rng, recorder):
-        with Path(os.environ["HOME"], "ran-from").open("a") as file:
-            file.write(__file__ + "\\n")
-        path = np.array([query.start, [5.0, bend(length * rng.random())], query.goal])
-        return Plan(PlanStatus.SOLVED, path)
-'''
 
 
 @pytest.fixture
 def user(tmp_path, monkeypatch):
-    """The folder of a user: a scene, a matrix, a planner and a module that it imports."""
-    folder = tmp_path / "user"
-    folder.mkdir()
+    folder = write_user_folder(tmp_path / "user", SEEDS)
     monkeypatch.setenv("HOME", str(folder))
-    block = make_scene(
-        "block", shapely.box(0, 0, 10, 10), [shapely.box(4, 0, 6, 2)], {"main": ((1, 3), (9, 3))}
-    )
-    write_scene(block, folder / "block.geojson")
-    (folder / "lucky.py").write_text(PLUGIN)
-    (folder / "detours.py").write_text("length = 5.0\n")
-    scenes = '["block.geojson", "block.geojson@turn=17"]'
-    planner = '[[planner]]\nplanner = "lucky"\nbudget = { generations = 1 }\n'
-    (folder / "matrix.toml").write_text(f"scenes = {scenes}\nseeds = {SEEDS}\n{planner}")
     yield folder
     name_plugins([])
 
@@ -117,7 +72,7 @@ def test_files_travel_to_machines_without_a_shared_disk(user, cluster, tmp_path)
         cluster.add_worker(machine=machines[0])
         wait_until(lambda: there.slots() == 2)
         again, _ = run(user, tmp_path / "again.db", executor=there)
-        ears = listening(cluster.processes)
+        ears = listening(process.pid for process in cluster.processes if process.poll() is None)
     assert runs["status"].tolist() == ["solved"] * 2 * SEEDS, runs["reason"].tolist()
     assert again["status"].tolist() == ["solved"] * 2 * SEEDS
     assert runs["key"].tolist() == local["key"].tolist()
