@@ -10,7 +10,7 @@ JOBS ?= 2
 ARGS ?=
 
 .PHONY: help setup setup-dev browser bench test test-slow torture lint docs perf harness results \
-	search-readings clean
+	cluster-test cluster-scaling search-readings clean
 
 help:
 	@echo "make bench     run the matrix paper-static and print its tables (ARGS=--quick: two seeds)"
@@ -19,6 +19,8 @@ help:
 	@echo "make docs      write the reference of the Python interface to out/docs"
 	@echo "make results   remake results/: three quarters of an hour; results-NAME: one folder of it"
 	@echo "make perf, make harness   measure the planners' times, and what the harness costs"
+	@echo "make cluster-test         run a matrix on SLURM, MPI and machines apart, on loopback"
+	@echo "make cluster-scaling      measure rows per second on 1 to 8 workers"
 
 setup: $(INSTALLED)
 setup-dev: $(INSTALLED)-dev
@@ -111,6 +113,23 @@ search-readings: setup
 # What the harness itself costs. On a machine that does nothing else.
 harness: setup
 	$(BIN)/python -m tests.perf.harness results/harness $(ARGS)
+
+# SLURM, MPI, and workers without a shared disk, all on loopback. What is missing is installed
+# where it can be, by root with apt; else a trial says that it is not available here, and why.
+CLUSTER_PACKAGES := munge slurm-wlm openmpi-bin libopenmpi-dev iproute2
+TRIALS ?=
+cluster-test: setup-dev
+	@dpkg -s $(CLUSTER_PACKAGES) >/dev/null 2>&1 || { test "$$(id -u)" = 0 && apt-get update -qq \
+		&& DEBIAN_FRONTEND=noninteractive apt-get install -y -qq \
+		--no-install-recommends $(CLUSTER_PACKAGES) >/dev/null; } \
+		|| echo "Not all of $(CLUSTER_PACKAGES) are here, and there is no right to install them."
+	@$(BIN)/python -m pip install --quiet --group cluster \
+		|| echo "The Python packages of the group cluster can't be installed."
+	$(BIN)/python -m tests.suite.harness.cluster.trials $(TRIALS)
+
+# On a machine that does nothing else.
+cluster-scaling: setup-dev
+	$(BIN)/python -m tests.perf.cluster_scaling results/harness $(ARGS)
 
 clean:
 	rm -rf .venv out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

@@ -10,6 +10,7 @@ import time
 from functools import cache
 
 import psutil
+from distributed import Client
 
 from suite.jit import cache_folder
 
@@ -42,6 +43,11 @@ class Cluster:
         join = ("--scheduler-file", str(self.file), "--nthreads", str(threads), "--no-nanny")
         join += ("--local-directory", str(local), *arguments)
         return self._start("worker", *join, machine=machine)
+
+    def wait_for(self, workers):
+        """Wait until so many are there: `connect` is less patient than a busy machine is slow."""
+        with Client(self.address, timeout=START_S, set_as_default=False) as client:
+            client.wait_for_workers(workers, timeout=START_S)
 
     def _start(self, kind, *arguments, machine=None):
         command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", *arguments, *LOOPBACK]

@@ -51,8 +51,8 @@ def test_a_cluster_gives_the_same_rows_though_a_worker_dies(cluster, matrix_file
             first.kill()
             killed.append(progress.done)
 
+    cluster.wait_for(2)
     with connect(cluster.address) as there:
-        wait_until(lambda: there.slots() == 2)
         runs, paths = run(matrix, tmp_path / "dask.db", executor=there, on_progress=kill_first)
         assert there.slots() == 1
     assert killed
@@ -80,6 +80,7 @@ def test_an_interruption_ends_the_runs_on_the_workers(cluster, matrix_file, tmp_
             wait_until(lambda: len(family(worker)) >= busy)
             raise KeyboardInterrupt
 
+    cluster.wait_for(1)
     with connect(cluster.address) as there, pytest.raises(KeyboardInterrupt) as interrupted:
         run(matrix, tmp_path / "s.db", executor=there, on_progress=interrupt)
     assert not getattr(interrupted.value, "__notes__", [])
@@ -122,8 +123,7 @@ def test_a_dry_run_counts_with_the_workers_of_the_cluster(cluster, matrix_file, 
     store = tmp_path / "s.db"
     command = ("run", matrix_file("wanderer"), "--store", store, "--dry-run")
     there = ("--executor", "dask", "--address", cluster.address)
-    with connect(cluster.address) as patient:
-        wait_until(lambda: patient.slots() == 3)
+    cluster.wait_for(3)
     assert "with 3 jobs" in in_own_process(*command, *there).out
     assert "with 5 jobs" in in_own_process(*command, *there, "--jobs", "5").out
     assert not store.exists()
@@ -158,6 +158,7 @@ def test_a_scheduler_that_dies_ends_the_matrix_and_keeps_its_rows(cluster, matri
 
     matrix = load_matrix(matrix_file("wanderer", "sleeper", seeds=SEEDS))
     cluster.add_worker()
+    cluster.wait_for(1)
     patience = dask.config.set({"distributed.comm.timeouts.connect": "1s"})
     with patience, connect(cluster.address) as there, pytest.raises(HarnessError, match="was lost"):
         run(matrix, tmp_path / "s.db", executor=there, on_progress=kill_scheduler)

@@ -39,8 +39,7 @@ def command(matrix_file, tmp_path):
 @pytest.fixture
 def two_workers(cluster):
     workers = [cluster.add_worker(), cluster.add_worker()]
-    with connect(cluster.address) as there:
-        wait_until(lambda: there.slots() == 2)
+    cluster.wait_for(2)
     return workers
 
 
@@ -115,6 +114,7 @@ def test_a_killed_scheduler_is_said_and_another_cluster_goes_on(
     other = Cluster(tmp_path / "other", cluster.env)
     try:
         other.add_worker()
+        other.wait_for(1)
         again = in_own_process(*command, *at(other))
     finally:
         other.close()
@@ -160,6 +160,7 @@ def test_an_interruption_ends_though_a_worker_stands_still(
 
 def test_a_worker_that_stands_still_at_the_beginning_is_named(cluster, matrix_file, monkeypatch):
     worker = cluster.add_worker()
+    cluster.wait_for(1)
     with connect(cluster.address) as there:
         monkeypatch.setattr(executors, "ANSWER_S", 0.5)
         worker.suspend()

@@ -61,16 +61,17 @@ def test_files_travel_to_machines_without_a_shared_disk(user, cluster, tmp_path)
         if progress.running and not can_hide() and user.exists():
             user.rename(away)
 
+    cluster.wait_for(2)
     with connect(cluster.address) as there:
-        wait_until(lambda: there.slots() == 2)
         runs, paths = run(user, tmp_path / "s.db", move_away, executor=there)
         if away.exists():
             away.rename(user)
         compiled_once = [machine.new_code() for machine in machines]
         # Another worker of the first machine, and another matrix: the machine code is there.
         workers[0].kill()
+        wait_until(lambda: there.slots() == 1)
         cluster.add_worker(machine=machines[0])
-        wait_until(lambda: there.slots() == 2)
+        cluster.wait_for(2)
         again, _ = run(user, tmp_path / "again.db", executor=there)
         ears = listening(process.pid for process in cluster.processes if process.poll() is None)
     assert runs["status"].tolist() == ["solved"] * 2 * SEEDS, runs["reason"].tolist()

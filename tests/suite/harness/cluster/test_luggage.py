@@ -1,0 +1,88 @@
+import pytest
+
+from suite.errors import HarnessError
+from suite.harness.cluster.luggage import Luggage, pack, unpack
+from suite.harness.fork_server import Warmth
+from suite.plugins.discovery import load_planner
+from suite.plugins.from_file import hand_on, name_plugins
+from suite.scenes.catalogue import load_scene
+from tests.suite.harness.cluster.user_folder import write_user_folder
+
+
+@pytest.fixture
+def user(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "there"))
+    yield write_user_folder(tmp_path / "user", seeds=1)
+    name_plugins([])
+
+
+def test_scenes_of_the_catalogue_stay_at_home():
+    luggage = pack(["zigzag", "zigzag@twin=3", "scattered_50-7"], [])
+    assert not luggage
+    assert unpack(luggage).source("zigzag@twin=3") == "zigzag@twin=3"
+
+
+def test_a_scene_file_arrives_with_its_modifiers(user):
+    source = f"{user / 'block.geojson'}@turn=17"
+    unpacked = unpack(pack([source], []))
+    (user / "block.geojson").unlink()
+    assert load_scene(unpacked.source(source)).name == "block@turn=17"
+    assert unpacked.warmth(Warmth(queries=((source, "main"),))).queries == (
+        (unpacked.source(source), "main"),
+    )
+
+
+def test_a_changed_file_lies_in_another_folder_and_an_equal_one_in_the_same(user):
+    file = user / "block.geojson"
+    first = unpack(pack([str(file)], [])).source(str(file))
+    again = unpack(pack([str(file)], [])).source(str(file))
+    file.write_text(file.read_text() + "\n")
+    changed = unpack(pack([str(file)], [])).source(str(file))
+    assert first == again != changed
+
+
+def test_a_planner_arrives_with_the_modules_that_it_imports(user):
+    (plugin,) = name_plugins([str(user / "lucky.py")])
+    unpacked = unpack(pack([], [plugin]))
+    for file in user.glob("*.py"):
+        file.unlink()
+    hand_on(unpacked.plugins)
+    assert load_planner("lucky").name == "lucky"
+    assert unpacked.plugins[0].version == plugin.version
+
+
+def test_a_planner_of_a_package_arrives(user, monkeypatch):
+    package = user / "mine" / "deep"
+    package.mkdir(parents=True)
+    (user / "mine" / "__init__.py").touch()
+    (package / "__init__.py").touch()
+    (user / "lucky.py").rename(package / "lucky.py")
+    (user / "detours.py").rename(package / "detours.py")
+    text = (package / "lucky.py").read_text().replace("from detours", "from .detours")
+    (package / "lucky.py").write_text(text)
+    monkeypatch.chdir(user)
+    (plugin,) = name_plugins(["mine.deep.lucky:Lucky"])
+    (packed,) = pack([], [plugin]).plugins
+    assert [name for name, _ in packed.parcel.files] == [
+        "mine/__init__.py",
+        "mine/deep/__init__.py",
+        "mine/deep/detours.py",
+        "mine/deep/lucky.py",
+    ]
+    (arrived,) = unpack(Luggage(plugins=(packed,))).plugins
+    assert arrived.reference == plugin.reference
+    assert arrived.folder != plugin.folder
+
+
+def test_a_file_that_is_gone_is_said_before_anything_runs(user):
+    source = str(user / "block.geojson")
+    (user / "block.geojson").unlink()
+    with pytest.raises(HarnessError, match=r"block\.geojson: can't be read, to be sent"):
+        pack([source], [])
+
+
+def test_a_machine_without_room_says_where_it_lacks(user, tmp_path, monkeypatch):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    with pytest.raises(HarnessError, match=r"can't be kept in .*set XDG_CACHE_HOME"):
+        unpack(pack([str(user / "block.geojson")], []))
