@@ -1,11 +1,22 @@
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
 import pytest
 
 from suite.errors import HarnessError
+from suite.harness.cluster import worker
+from suite.harness.cluster.executors import new_session
 from suite.harness.cluster.luggage import Luggage, pack, unpack
+from suite.harness.cluster.worker import Answer, describe, end_session, run_for
 from suite.harness.fork_server import Warmth
+from suite.harness.matrix import Limits
+from suite.harness.single import cell_for
+from suite.planner import PlanStatus
 from suite.plugins.discovery import load_planner
 from suite.plugins.from_file import hand_on, name_plugins
 from suite.scenes.catalogue import load_scene
+from tests.suite.harness.cluster.dask_on_loopback import wait_until
 from tests.suite.harness.cluster.user_folder import write_user_folder
 
 
@@ -86,3 +97,36 @@ def test_a_machine_without_room_says_where_it_lacks(user, tmp_path, monkeypatch)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     with pytest.raises(HarnessError, match=r"can't be kept in .*set XDG_CACHE_HOME"):
         unpack(pack([str(user / "block.geojson")], []))
+
+
+def test_a_worker_asks_for_luggage_once(user):
+    source = str(user / "block.geojson")
+    cell = cell_for(source, "visibility-graph", seed=0)
+    luggage = pack([source], [])
+    session = new_session(luggage)
+    (user / "block.geojson").unlink()
+    assert run_for(session, cell, Limits(), Warmth()) is Answer.SEND_LUGGAGE
+    for given in (luggage, None):
+        record = run_for(session, cell, Limits(), Warmth(), given)
+        assert record.status is PlanStatus.SOLVED, record.reason
+        assert record.cell is cell
+
+
+def test_a_worker_does_not_mix_the_planners_of_two_matrices(hostile, user, wall_file):
+    first, cell = new_session(), cell_for(str(wall_file), "hangs-in-c", seed=0)
+    (plugin,) = name_plugins([str(user / "lucky.py")])
+    luggage = pack([], [plugin])
+    second, own = new_session(luggage), replace(cell, planner="lucky")
+    hand_on([])
+    with ThreadPoolExecutor(1) as pool:
+        running = pool.submit(run_for, first, cell, Limits(), Warmth())
+        try:
+            wait_until(lambda: worker._desk.in_flight[first.key])
+            with pytest.raises(HarnessError, match="runs another matrix, with other files"):
+                run_for(second, own, Limits(), Warmth(), luggage)
+        finally:
+            while not running.done():
+                end_session(first)
+                time.sleep(0.05)
+    assert running.result().status is PlanStatus.CRASHED
+    assert describe(second)["unfit"] is None

@@ -24,7 +24,7 @@ from tests.suite.harness.cluster.dask_on_loopback import (
 )
 from tests.suite.harness.cluster.user_folder import write_user_folder
 
-SEEDS = 8
+SEEDS = 4
 
 
 @pytest.fixture
