@@ -112,7 +112,7 @@ def _note(progress, times):
     times += [time.perf_counter()] * (progress.done - len(times))
 
 
-def scaling_table(measured):
+def scaling_table(measured, load):
     """The table that stands in results/harness."""
     return Table(
         "cluster-scaling",
@@ -120,7 +120,8 @@ def scaling_table(measured):
         pd.DataFrame(measured),
         note="Rows per second from the row at which every worker has had one to the last. The "
         f"ideal is one row of each worker every {SLEEP_S} s. dask: scheduler and workers, one "
-        "thread each, are processes of this machine; local: `--executor local` with so many jobs.",
+        "thread each, are processes of this machine; local: `--executor local` with so many jobs. "
+        f"{os.cpu_count()} cores, whose load average was {load:.1f} before.",
     )
 
 
@@ -131,8 +132,9 @@ def main(arguments=None):
     parser.add_argument("--workers", type=int, nargs="+", default=[1, 2, 4, 8])
     parser.add_argument("--rows", type=int, default=30, help="of each worker")
     given = parser.parse_args(arguments)
+    load = os.getloadavg()[0]
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        table = scaling_table(measure(given.workers, given.rows, Path(folder)))
+        table = scaling_table(measure(given.workers, given.rows, Path(folder)), load)
     given.folder.mkdir(parents=True, exist_ok=True)
     text = render(table, TableFormat.MARKDOWN)
     (given.folder / "cluster-scaling.md").write_text(text)

@@ -49,6 +49,9 @@ FIRST_WORKER_S = 10.0
 ANSWER_S = 60.0
 """How long the workers may take to say what they are: one that is stopped never does."""
 
+HEARD_S = 30.0
+"""How long they may take to kill runs: a busy machine takes seconds for it."""
+
 END_S = 5.0
 """How long to wait for killed runs to be gone."""
 
@@ -142,7 +145,7 @@ class DaskExecutor(Executor):
         """
         deadline = time.monotonic() + END_S
         while True:
-            answers = self._ask(end_session, session, "ignore", END_S)
+            answers = self._ask(end_session, session, "ignore", HEARD_S)
             left = sum(answers.values())
             if not left or time.monotonic() > deadline:
                 return left

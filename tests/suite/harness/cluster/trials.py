@@ -19,7 +19,7 @@ import sys
 import threading
 import time
 import traceback
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -45,6 +45,9 @@ SEEDS = 20
 ROWS = 2 * SEEDS
 LIMIT_S = 900.0
 """Of a command, with all kernels compiled on the way on a slow machine."""
+
+GONE = ("CD", "CA", "F", "TO", "NF")
+"""States of jobs that are over."""
 
 SLURM = Path(__file__).parent / "slurm_on_loopback.sh"
 PACKAGES = {
@@ -148,6 +151,9 @@ def slurm(folder):
         os.environ["SLURM_CONF"] = str(folder / "slurm" / "slurm.conf")
         yield script
     finally:
+        # slurmd kills a job that does not end by itself, if it has the time.
+        with suppress(AssertionError, OSError):
+            wait_until(lambda: not jobs_of_slurm("all"), patience_s=30)
         os.environ.pop("SLURM_CONF", None)
         script.stdin.close()  # which it waits for
         try:
@@ -162,12 +168,24 @@ def free_port():
         return found.getsockname()[1]
 
 
-def jobs_of_slurm():
+def jobs_of_slurm(states="RUNNING"):
     said = subprocess.run(
-        ["squeue", "--noheader", "--states=RUNNING", "--format=%i"],
-        capture_output=True, text=True, check=True,
+        ["squeue", "--noheader", f"--states={states}", "--format=%i %t"],
+        capture_output=True, text=True,
     )  # fmt: skip
-    return said.stdout.split()
+    jobs = [line.split() for line in said.stdout.splitlines()]
+    return [number for number, state in jobs if state not in GONE]
+
+
+def end_what_is_left(top):
+    """End processes that were started with this folder and outlived their masters, by their ids.
+
+    A dask worker that is told to end twice at a time may hang (distributed 2026.8).
+    """
+    for process in psutil.process_iter(["cmdline"]):
+        if f"--local-directory {top}" in " ".join(process.info["cmdline"] or ()):
+            with suppress(psutil.NoSuchProcess):
+                process.kill()
 
 
 def try_slurm(top):
@@ -381,6 +399,8 @@ def outcome(name):
         except Exception:
             say(traceback.format_exc())
             return "failed"
+        finally:
+            end_what_is_left(top)
     return "passed"
 
 
