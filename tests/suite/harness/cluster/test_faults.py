@@ -104,7 +104,7 @@ def test_a_killed_scheduler_is_said_and_another_cluster_goes_on(
     in_the_middle(store)
     end(cluster.processes[0])
     _, err = running.communicate(timeout=LIMIT_S)
-    assert running.returncode == 1
+    assert running.returncode == 2
     assert "the executor was lost" in err
     assert "All finished runs are kept" in err
     assert "Traceback" not in err
