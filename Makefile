@@ -10,7 +10,7 @@ JOBS ?= 2
 ARGS ?=
 
 .PHONY: help setup setup-dev browser kernels bench test test-loaded test-slow torture lint docs \
-	perf harness faults sites results search-readings clean
+	perf harness faults sites results cluster-test cluster-scaling search-readings clean
 
 help:
 	@echo "make bench     run the matrix paper-static and print its tables (ARGS=--quick: two seeds)"
@@ -21,6 +21,8 @@ help:
 	@echo "make perf, make harness   measure the planners' times, and what the harness costs"
 	@echo "make faults    let happen what may go wrong, and say what came of it (as root: disks too)"
 	@echo "make sites     random building sites at places on earth, 1 mm to 1,000 km; half an hour"
+	@echo "make cluster-test         run a matrix on SLURM, MPI and machines apart, on loopback"
+	@echo "make cluster-scaling      measure rows per second on 1 to 8 workers"
 
 setup: $(INSTALLED)
 setup-dev: $(INSTALLED)-dev
@@ -143,6 +145,23 @@ faults: setup
 # Whether it holds anywhere: 1,000 random building sites at each place and of each size.
 sites: setup
 	$(BIN)/python -m tests.perf.sites results/sites $(ARGS)
+
+# SLURM, MPI, and workers without a shared disk, all on loopback. What is missing is installed
+# where it can be, by root with apt; else a trial says that it is not available here, and why.
+CLUSTER_PACKAGES := munge slurm-wlm openmpi-bin libopenmpi-dev iproute2
+TRIALS ?=
+cluster-test: setup-dev
+	@dpkg -s $(CLUSTER_PACKAGES) >/dev/null 2>&1 || { test "$$(id -u)" = 0 && apt-get update -qq \
+		&& DEBIAN_FRONTEND=noninteractive apt-get install -y -qq \
+		--no-install-recommends $(CLUSTER_PACKAGES) >/dev/null; } \
+		|| echo "Not all of $(CLUSTER_PACKAGES) are here, and there is no right to install them."
+	@$(BIN)/python -m pip install --quiet --group cluster \
+		|| echo "The Python packages of the group cluster can't be installed."
+	$(BIN)/python -m tests.suite.harness.cluster.trials $(TRIALS)
+
+# On a machine that does nothing else.
+cluster-scaling: setup-dev
+	$(BIN)/python -m tests.perf.cluster_scaling results/harness $(ARGS)
 
 clean:
 	rm -rf .venv out build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks

@@ -6,7 +6,7 @@ processes. Rows come back to the caller's thread, which is the store's one write
 
 import os
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, wait
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -14,7 +14,8 @@ from typing import Self
 
 import numpy as np
 
-from suite.harness.cluster.executors import Crew, crew, record_of
+from suite.harness.cluster.executors import Coming, Crew, crew, record_of
+from suite.harness.cluster.worker import Answer
 from suite.harness.fork_server import Warmth
 from suite.harness.matrix import Limits, Matrix
 from suite.harness.patience import Patience
@@ -258,7 +259,7 @@ def _records(
     Runs that are in flight when the caller closes the iterator, or is interrupted, are killed.
     """
     queue = iter(cells)
-    in_flight: dict[Future[RunRecord], Cell] = {}
+    in_flight: dict[Coming, Cell] = {}
     try:
         while True:
             jobs = crew.size()
@@ -271,7 +272,12 @@ def _records(
                 return
             done, _ = wait(in_flight, return_when=FIRST_COMPLETED)
             for future in done:
-                yield record_of(future, in_flight.pop(future))
+                cell = in_flight.pop(future)
+                record = record_of(future, cell)
+                if isinstance(record, Answer):
+                    in_flight[crew.start(cell, with_luggage=True)] = cell
+                else:
+                    yield record
     finally:
         progress.left = crew.abandon(in_flight) if in_flight else 0
 

@@ -10,7 +10,7 @@ import importlib
 import json
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import ModuleType
@@ -83,11 +83,16 @@ def name_plugins(references: Iterable[str]) -> list[NamedPlugin]:
         If there is no planner. Nothing has changed then.
     """
     plugins = [plugin for reference in references for plugin in _resolved(reference)]
+    hand_on(plugins)
+    return plugins
+
+
+def hand_on(plugins: Sequence[NamedPlugin]) -> None:
+    """Make planners known that were found, in place of earlier ones. Imports none of them."""
     if plugins:
         os.environ[VARIABLE] = json.dumps([asdict(plugin) for plugin in plugins])
     else:
         os.environ.pop(VARIABLE, None)
-    return plugins
 
 
 def named_plugins() -> list[NamedPlugin]:

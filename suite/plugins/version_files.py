@@ -96,6 +96,11 @@ def _literal(source: Path, node: Any) -> tuple[str, ...]:
 
 def _there(source: Path, name: str) -> set[Path]:
     file = source.parent / name
+    if not file.resolve().is_relative_to(source.parent.resolve()):
+        raise PluginError(
+            f"{source.name} names '{name}' in {ATTRIBUTE}, which lies outside of its folder. Only "
+            "what lies beside the code goes where it goes."
+        )
     if file.is_dir():
         return {inner for inner in file.rglob("*") if inner.is_file()}
     if not file.is_file():

@@ -217,8 +217,11 @@ class Referee:
     def _what_it_enters(self, segment: shapely.LineString) -> str:
         """Say what a segment that is known to leave free space enters first, and where."""
         pieces = shapely.get_parts(shapely.intersection(segment, self._solid))
+        pieces = pieces[
+            shapely.get_dimensions(pieces) == 1
+        ]  # a shallow entry is rounded to a point
         pieces = pieces[shapely.relate_pattern(self._solid, pieces, INTERIORS_MEET)]
-        if len(pieces) == 0:  # the intersection was rounded to the boundary
+        if len(pieces) == 0:  # or to the boundary
             pieces = np.array([segment])
         origin = shapely.get_point(segment, 0)
         first = pieces[np.argmin(shapely.distance(pieces, origin))]

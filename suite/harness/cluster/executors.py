@@ -1,7 +1,7 @@
 """Where runs are waited for: threads of this process, a dask cluster, or any other executor.
 
 ``concurrent.futures.Executor`` is the only idea of "where". How to run on a cluster is told in
-``CLUSTERS.md`` beside this file.
+``README.md`` beside this file.
 """
 
 import time
@@ -20,7 +20,15 @@ from dataclasses import dataclass
 from typing import Any, ParamSpec, TypeVar
 
 from suite.errors import HarnessError
-from suite.harness.cluster.worker import DISTRIBUTION, Session, describe, end_session, run_for
+from suite.harness.cluster.luggage import Luggage, pack
+from suite.harness.cluster.worker import (
+    DISTRIBUTION,
+    Answer,
+    Session,
+    describe,
+    end_session,
+    run_for,
+)
 from suite.harness.fleet import kill_running, start_server
 from suite.harness.fork_server import Warmth
 from suite.harness.isolate import run_isolated
@@ -28,6 +36,7 @@ from suite.harness.matrix import Limits
 from suite.harness.patience import Patience
 from suite.harness.provenance import package_version
 from suite.planner import PlanStatus
+from suite.plugins.from_file import named_plugins
 from suite.processes.cores import honest_jobs
 from suite.store.record import Cell, RunRecord
 
@@ -36,6 +45,12 @@ CONNECT_S = 10.0
 
 FIRST_WORKER_S = 10.0
 """How long its first worker may take to be there."""
+
+ANSWER_S = 60.0
+"""How long the workers may take to say what they are: one that is stopped never does."""
+
+HEARD_S = 30.0
+"""How long they may take to kill runs: a busy machine takes seconds for it."""
 
 END_S = 5.0
 """How long to wait for killed runs to be gone."""
@@ -49,9 +64,12 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-def new_session() -> Session:
+Coming = Future[RunRecord | Answer]
+
+
+def new_session(luggage: Luggage | None = None) -> Session:
     """A session of this suite that is like no other."""
-    return Session(uuid.uuid4().hex, package_version(DISTRIBUTION))
+    return Session(uuid.uuid4().hex, package_version(DISTRIBUTION), bool(luggage))
 
 
 class DaskExecutor(Executor):
@@ -90,9 +108,15 @@ class DaskExecutor(Executor):
         Raises
         ------
         HarnessError
-            If a worker can do no runs.
+            If a worker can do no runs, or does not answer.
         """
-        answers = self._client.run(describe, session, on_error="return")
+        try:
+            answers = self._ask(describe, session, "return", ANSWER_S)
+        except TimeoutError as error:
+            raise HarnessError(
+                f"{self.address}: {self._longest_silent()} does not answer within {ANSWER_S:g} s. "
+                "Let it go on if it is stopped, or end it."
+            ) from error
         machines = {}
         for worker, answer in answers.items():
             if isinstance(answer, Exception):
@@ -117,15 +141,30 @@ class DaskExecutor(Executor):
         Raises
         ------
         OSError, RuntimeError
-            If the scheduler is gone: nobody knows what goes on.
+            If the scheduler is gone, or a worker does not answer: nobody knows what goes on.
         """
         deadline = time.monotonic() + END_S
         while True:
-            answers = self._client.run(end_session, session, on_error="ignore")
+            answers = self._ask(end_session, session, "ignore", HEARD_S)
             left = sum(answers.values())
             if not left or time.monotonic() > deadline:
                 return left
             time.sleep(POLL_S)
+
+    def _ask(
+        self, question: Callable[[Session], T], session: Session, on_error: str, limit_s: float
+    ) -> dict[str, Any]:
+        """What each worker answers, by its address; a TimeoutError if one does not."""
+        # `run` hands on what it does not know, to `Client.sync`.
+        answers: dict[str, Any] = self._client.run(
+            question, session, on_error=on_error, callback_timeout=limit_s
+        )
+        return answers
+
+    def _longest_silent(self) -> str:
+        """The worker that was last heard of before all others."""
+        workers = self._client.scheduler_info(n_workers=-1)["workers"]
+        return f"the worker {min(workers, key=lambda worker: workers[worker]['last_seen'])}"
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Leave the cluster, which goes on."""
@@ -189,6 +228,7 @@ class Crew:
     patience : with this machine, if it is busy. Workers elsewhere have none.
     limits : of each run.
     warmth : what fork servers have ready for them.
+    luggage : files that they need, for workers that ask for them.
     """
 
     executor: Executor
@@ -197,6 +237,7 @@ class Crew:
     patience: Patience
     limits: Limits
     warmth: Warmth
+    luggage: Luggage
 
     def size(self) -> int:
         """Runs at a time."""
@@ -204,12 +245,13 @@ class Crew:
             return self.executor.slots()
         return self.jobs or honest_jobs()
 
-    def start(self, cell: Cell) -> Future[RunRecord]:
-        """Have a cell run."""
+    def start(self, cell: Cell, *, with_luggage: bool = False) -> Coming:
+        """Have a cell run; with luggage, if a worker answered that it has none yet."""
         what = (cell, self.limits, self.warmth)
         if self.session is None:
             return self.executor.submit(_run_patiently, self.patience, *what)
-        return self.executor.submit(run_for, self.session, *what)
+        luggage = self.luggage if with_luggage else None
+        return self.executor.submit(run_for, self.session, *what, luggage)
 
     def provenance(self) -> dict[str, Any]:
         """Where runs go that do not stay on this machine."""
@@ -220,7 +262,7 @@ class Crew:
             "workers": self.executor.machines(self.session),
         }
 
-    def abandon(self, futures: Collection[Future[RunRecord]]) -> int:
+    def abandon(self, futures: Collection[Coming]) -> int:
         """Kill runs in flight, and say how many could not be: they end at their limits.
 
         Their records are dropped: the next session runs them again.
@@ -231,7 +273,8 @@ class Crew:
             try:
                 return self.executor.end(self.session)
             except (OSError, RuntimeError):
-                # A scheduler that is gone; its workers leave too, and their runs with them.
+                # A scheduler that is gone; its workers leave too, and their runs with them. Or a
+                # worker that stands still; the others have heard it.
                 return len(futures)
         deadline = time.monotonic() + ABANDON_S
         while started and (self.session is None or time.monotonic() < deadline):
@@ -255,23 +298,33 @@ def crew(
     patience : Patience
         With this machine.
     limits, warmth : of each run. The fork server of this process begins to warm itself.
+
+    Raises
+    ------
+    HarnessError
+        If a file that workers will need can't be read any more.
     """
     if given is not None:
-        yield Crew(given, jobs, new_session(), patience, limits, warmth)
+        luggage = pack((source for source, _ in warmth.queries), named_plugins())
+        yield Crew(given, jobs, new_session(luggage), patience, limits, warmth, luggage)
         return
     start_server(warmth)
     jobs = jobs or honest_jobs()
     with ThreadPoolExecutor(jobs, thread_name_prefix="run") as own:
-        yield Crew(own, jobs, None, patience, limits, warmth)
+        yield Crew(own, jobs, None, patience, limits, warmth, Luggage())
 
 
-def _run_patiently(patience: Patience, cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
+def _run_patiently(
+    patience: Patience, cell: Cell, limits: Limits, warmth: Warmth
+) -> RunRecord | Answer:
     with patience.free_core(wanted=patience.for_all or cell.load_counts):
         return run_isolated(cell, limits, warmth)
 
 
-def record_of(future: "Future[RunRecord]", cell: Cell) -> RunRecord:
+def record_of(future: Coming, cell: Cell) -> RunRecord | Answer:
     """The record of a run that came back, whatever became of the place where it was.
+
+    An Answer, if its worker wants to be given more.
 
     Raises
     ------

@@ -9,11 +9,13 @@ import threading
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from enum import Enum
 from typing import Any
 
 from suite.errors import HarnessError
+from suite.harness.cluster.luggage import Luggage, Unpacked, unpack
 from suite.harness.fleet import kill_running, stop_server
 from suite.harness.fork_server import Warmth
 from suite.harness.isolate import run_isolated
@@ -21,6 +23,7 @@ from suite.harness.matrix import Limits
 from suite.harness.provenance import host_name, package_version, provenance
 from suite.planner import PlanStatus
 from suite.plugins.discovery import planner_version
+from suite.plugins.from_file import hand_on, named_plugins
 from suite.store.record import Cell, RunRecord
 
 DISTRIBUTION = "kbga-bench"
@@ -32,22 +35,31 @@ class Session:
 
     key : tells it from all others.
     version : of the suite that it is.
+    has_luggage : whether its runs need files that a worker must be sent first.
     """
 
     key: str
     version: str | None
+    has_luggage: bool = False
+
+
+class Answer(Enum):
+    """What a worker may answer instead of a record."""
+
+    SEND_LUGGAGE = "send luggage"
+    """It is new to the session: the run is to be given to it again, with all files."""
 
 
 @dataclass(slots=True, eq=False)
 class _Desk:
     """What this process does, and for whom.
 
-    sessions : keys of all that had runs here.
+    sessions : by the keys of all that had runs here, what came with them.
     in_flight : number of runs, by the key of the session.
     versions : of planners' distributions, as they were when the last new session began.
     """
 
-    sessions: set[str] = field(default_factory=set)
+    sessions: dict[str, Unpacked] = field(default_factory=dict)
     in_flight: Counter[str] = field(default_factory=Counter)
     versions: dict[str, str | None] = field(default_factory=dict)
 
@@ -56,7 +68,9 @@ _desk = _Desk()
 _lock = threading.Lock()
 
 
-def run_for(session: Session, cell: Cell, limits: Limits, warmth: Warmth) -> RunRecord:
+def run_for(
+    session: Session, cell: Cell, limits: Limits, warmth: Warmth, luggage: Luggage | None = None
+) -> RunRecord | Answer:
     """Run a cell here, as :func:`suite.harness.isolate.run_isolated` does, for a harness elsewhere.
 
     Parameters
@@ -64,23 +78,43 @@ def run_for(session: Session, cell: Cell, limits: Limits, warmth: Warmth) -> Run
     session : Session
         Who wants it.
     cell, limits, warmth : as there.
+    luggage : Luggage, optional
+        Files of the session, if this worker asked for them.
 
     Returns
     -------
-    RunRecord
-        An ERROR if the planner is not here, or is another version than the cell says.
+    RunRecord or Answer
+        An ERROR if the planner is not here, or is another version than the cell says, or if there
+        is no place for the luggage.
 
     Raises
     ------
     HarnessError
-        If this process can do no runs at all.
+        If this process can do no runs at all, or none of this session.
     """
+    with _lock:
+        if session.key not in _desk.sessions:
+            if session.has_luggage and luggage is None:
+                return Answer.SEND_LUGGAGE
+            _check_fit(session)
+            try:
+                unpacked = unpack(luggage or Luggage())
+            except HarnessError as error:
+                return _failed(cell, f"{host_name()}: {error}")
+            _begin(session, unpacked)
+        unpacked = _desk.sessions[session.key]
+        _desk.in_flight[session.key] += 1
     with _at_work(session):
         reason = _lack(cell)
         if reason is not None:
-            now = datetime.now(UTC).isoformat(timespec="seconds")
-            return RunRecord(cell, PlanStatus.ERROR, reason, host=host_name(), started_at=now)
-        return run_isolated(cell, limits, warmth)
+            return _failed(cell, reason)
+        here = replace(cell, scene_source=unpacked.source(cell.scene_source))
+        return replace(run_isolated(here, limits, unpacked.warmth(warmth)), cell=cell)
+
+
+def _failed(cell: Cell, reason: str) -> RunRecord:
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    return RunRecord(cell, PlanStatus.ERROR, reason, host=host_name(), started_at=now)
 
 
 def describe(session: Session) -> dict[str, Any]:
@@ -104,9 +138,7 @@ def end_session(session: Session) -> int:
 
 @contextmanager
 def _at_work(session: Session) -> Iterator[None]:
-    with _lock:
-        _begin(session)
-        _desk.in_flight[session.key] += 1
+    """A run that is counted as in flight already, and not any more afterwards."""
     try:
         yield
     finally:
@@ -116,16 +148,24 @@ def _at_work(session: Session) -> Iterator[None]:
             _desk.in_flight += Counter()
 
 
-def _begin(session: Session) -> None:
-    """Prepare for a session that is new here: planners and scenes may have changed since."""
-    if session.key in _desk.sessions:
-        return
+def _check_fit(session: Session) -> None:
     reason = _unfit(session)
     if reason is not None:
         raise HarnessError(reason)
+
+
+def _begin(session: Session, unpacked: Unpacked) -> None:
+    """Prepare for a session that is new here: planners and scenes may have changed since."""
     if not _desk.in_flight.total():
         stop_server()
-    _desk.sessions.add(session.key)
+        hand_on(unpacked.plugins)
+    elif not set(unpacked.plugins) <= set(named_plugins()):
+        # The fork server that they share was started with those of the others.
+        raise HarnessError(
+            f"a worker on {host_name()} runs another matrix, with other files for --plugin. Start "
+            "this one when that has ended, or give it workers of its own."
+        )
+    _desk.sessions[session.key] = unpacked
     _desk.versions.clear()
 
 

@@ -44,11 +44,6 @@ def test_sites_of_a_hand_and_smaller_hold_at_the_origin(room):
     assert found.too_coarse == 0
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="Referee._what_it_enters raises TypeError where GEOS rounds what a segment enters to a "
-    "point: line_interpolate_point takes lines only.",
-)
 def test_sites_of_a_hand_hold_on_a_map():
     found = examined("Lambert-93 Paris", "10 cm", SAMPLE)
     assert found.holds, said(found)

@@ -1,9 +1,6 @@
-import json
 import multiprocessing
 import os
-import subprocess
 import sys
-import time
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
 from types import SimpleNamespace
 
@@ -25,45 +22,10 @@ from suite.planner import PlanStatus
 from suite.store.read import read_paths, read_runs, read_sessions
 from suite.store.write import open_store
 from tests.suite.commands import in_own_process
+from tests.suite.harness.cluster.dask_on_loopback import START_S, Cluster, wait_until
 from tests.suite.harness.records import make_cell
 
-START_S = 300.0
 SEEDS = 6
-
-
-class Cluster:
-    """A dask scheduler and workers: real processes, on loopback, on free ports."""
-
-    def __init__(self, folder, env):
-        self.env = env
-        file = folder / "scheduler.json"
-        self.processes = [self._start("scheduler", "--port", "0", "--scheduler-file", str(file))]
-        wait_until(lambda: file.exists() and file.stat().st_size > 0)
-        self.join = ["worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny"]
-        self.address = json.loads(file.read_text())["address"]
-
-    def add_worker(self):
-        self.processes.append(self._start(*self.join, "--local-directory", self.env["TMPDIR"]))
-        return psutil.Process(self.processes[-1].pid)
-
-    def _start(self, kind, *arguments):
-        command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", *arguments]
-        return subprocess.Popen(
-            [*command, "--host", "127.0.0.1", "--no-dashboard"],
-            env=self.env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
-
-    def close(self):
-        for process in reversed(self.processes):
-            process.kill()
-            process.wait()
-
-
-def wait_until(ready):
-    deadline = time.monotonic() + START_S
-    while not ready() and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert ready()
 
 
 @pytest.fixture
@@ -92,8 +54,8 @@ def test_a_cluster_gives_the_same_rows_though_a_worker_dies(cluster, matrix_file
             first.kill()
             killed.append(progress.done)
 
+    cluster.wait_for(2)
     with connect(cluster.address) as there:
-        wait_until(lambda: there.slots() == 2)
         runs, paths = run(matrix, tmp_path / "dask.db", executor=there, on_progress=kill_first)
         assert there.slots() == 1
     assert killed
@@ -114,11 +76,16 @@ def test_an_interruption_ends_the_runs_on_the_workers(cluster, matrix_file, tmp_
     busy = 2  # the fork server and the run
     matrix = load_matrix(matrix_file("hangs-in-c", seeds=3))
 
+    told = []
+
     def interrupt(progress):
-        if progress.running:
+        told.append(progress.running)
+        # At first the worker asks for the scene's file.
+        if len(told) > 2:
             wait_until(lambda: len(family(worker)) >= busy)
             raise KeyboardInterrupt
 
+    cluster.wait_for(1)
     with connect(cluster.address) as there, pytest.raises(KeyboardInterrupt) as interrupted:
         run(matrix, tmp_path / "s.db", executor=there, on_progress=interrupt)
     assert not getattr(interrupted.value, "__notes__", [])
@@ -161,8 +128,7 @@ def test_a_dry_run_counts_with_the_workers_of_the_cluster(cluster, matrix_file, 
     store = tmp_path / "s.db"
     command = ("run", matrix_file("wanderer"), "--store", store, "--dry-run")
     there = ("--executor", "dask", "--address", cluster.address)
-    with connect(cluster.address) as patient:
-        wait_until(lambda: patient.slots() == 3)
+    cluster.wait_for(3)
     assert "with 3 jobs" in in_own_process(*command, *there).out
     assert "with 5 jobs" in in_own_process(*command, *there, "--jobs", "5").out
     assert not store.exists()
@@ -197,6 +163,7 @@ def test_a_scheduler_that_dies_ends_the_matrix_and_keeps_its_rows(cluster, matri
 
     matrix = load_matrix(matrix_file("wanderer", "sleeper", seeds=SEEDS))
     cluster.add_worker()
+    cluster.wait_for(1)
     patience = dask.config.set({"distributed.comm.timeouts.connect": "1s"})
     with patience, connect(cluster.address) as there, pytest.raises(HarnessError, match="was lost"):
         run(matrix, tmp_path / "s.db", executor=there, on_progress=kill_scheduler)
