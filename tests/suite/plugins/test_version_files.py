@@ -95,7 +95,7 @@ def test_names_that_are_made_later_are_refused(file):
 def test_a_file_outside_the_folder_is_refused(file):
     (file.parent / "inner").mkdir()
     inner = file.rename(file.parent / "inner" / "weighs.py")
-    inner.write_text(CODE.replace('"weights.txt", "tables"', '"../weights.txt"'))
+    inner.write_text(CODE.replace('"weights.txt", "tables"', '"../weights.txt",'))
     with pytest.raises(PluginError, match="which lies outside of its folder"):
         name_plugins([str(inner)])
 
