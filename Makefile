@@ -58,7 +58,7 @@ kernels: setup-dev
 
 # What runs in a test; TESTS=FILE for some.
 TESTS ?=
-ORDINARY := $(BIN)/python -m pytest -q -m "not slow and not torture" -n 2 --dist worksteal
+ORDINARY := $(BIN)/python -m pytest -q -m "not slow and not torture" -n 3 --dist worksteal
 
 # The kernels' claims hold compiled and interpreted: the second line runs them without the JIT.
 test: setup-dev browser kernels

@@ -351,6 +351,7 @@ def main(arguments: list[str] | None = None) -> None:
     for place in PLACES:
         for room in ROOMS:
             findings[place, room] = found = examined(place, room, given.draws)
+            sys.stderr.write(f"{len(findings)} of {len(PLACES) * len(ROOMS)}: {place}, {room}\n")
             for message in found.messages[:3]:
                 sys.stderr.write(f"{message}\n")
     scenes = sample()

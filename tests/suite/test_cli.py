@@ -4,6 +4,7 @@ import json
 import os
 import sqlite3
 import sys
+import time
 import warnings
 from contextlib import closing
 
@@ -607,7 +608,11 @@ def test_a_row_that_is_not_there_cannot_be_repeated(error_of, filled):
 # A machine that is busy
 
 
-def test_a_plan_may_have_a_budget_of_cpu_time(kbga_bench, hostile, wall_file, tmp_path):
+def test_a_plan_may_have_a_budget_of_cpu_time(
+    kbga_bench, hostile, wall_file, tmp_path, monkeypatch
+):
+    # Awake, drowsy sets the clock of its process, which is this one: it is put back afterwards.
+    monkeypatch.setattr(time, "process_time", time.process_time)
     drowsy = ("--planner", "drowsy", "--set", f"folder={tmp_path}", "--cpu-s", 2)
     found = json.loads(kbga_bench("plan", wall_file, *drowsy, "--format", "json").out)
     assert found["budget"] == {"wall_s": None, "generations": None, "checks": None, "cpu_s": 2.0}
