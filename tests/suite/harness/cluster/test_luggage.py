@@ -14,6 +14,7 @@ from suite.harness.cluster.worker import Answer, describe, end_session, run_for
 from suite.harness.fork_server import Warmth
 from suite.harness.matrix import Limits
 from suite.harness.single import cell_for
+from suite.jit import cache_folder
 from suite.planner import PlanStatus
 from suite.plugins.discovery import load_planner
 from suite.plugins.from_file import hand_on, name_plugins
@@ -24,6 +25,7 @@ from tests.suite.harness.cluster.user_folder import write_user_folder
 
 @pytest.fixture
 def user(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(cache_folder().parents[1]))  # kernels need not compile anew
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "there"))
     yield write_user_folder(tmp_path / "user", seeds=1)
     name_plugins([])
