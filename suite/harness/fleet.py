@@ -81,7 +81,7 @@ def start_server(warmth: Warmth) -> None:
             make_socket_folder()
             forkserver.ensure_running()
         except OSError as error:
-            raise _no_process(error) from error
+            raise no_process(error) from error
     _post_sentry()
 
 
@@ -139,10 +139,11 @@ def start(arguments: tuple[Any, ...], warmth: Warmth) -> ForkServerProcess:
         _give_up_on(server, stops)
     if _fleet.stops != stops:
         raise StoppedError
-    raise _no_process(failure) from failure
+    raise no_process(failure) from failure
 
 
-def _no_process(error: Exception) -> HarnessError:
+def no_process(error: Exception) -> HarnessError:
+    """What to say where the system gives a run no process, or none of the pipes that it needs."""
     why = getattr(error, "strerror", None) or "the fork server does not answer"
     file = getattr(error, "filename", None)
     return HarnessError(

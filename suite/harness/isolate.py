@@ -11,12 +11,12 @@ import time
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from multiprocessing.connection import wait
+from multiprocessing.connection import Connection, wait
 from multiprocessing.context import ForkServerProcess
 from typing import Any
 
 from suite.harness.child import PLANNING, LastMessage
-from suite.harness.fleet import StoppedError, end, reap, start
+from suite.harness.fleet import StoppedError, end, no_process, reap, start
 from suite.harness.fork_server import Warmth
 from suite.harness.matrix import Limits
 from suite.harness.provenance import host_name
@@ -100,8 +100,7 @@ def _started(
     cell: Cell, warmth: Warmth, core: int | None, snapshots_of: Collection[int]
 ) -> Iterator[_Child]:
     """A process that runs the cell; it and its descendants are gone afterwards."""
-    receiver, sender = multiprocessing.Pipe(duplex=False)
-    error_reader, error_writer = multiprocessing.Pipe(duplex=False)
+    (receiver, sender), (error_reader, error_writer) = _pipe(), _pipe()
     with receiver, error_reader:
         with sender, error_writer:
             process = start((cell, sender, error_writer, core, snapshots_of), warmth)
@@ -111,6 +110,13 @@ def _started(
         finally:
             end(process, is_alone=child.alone)
             child.stderr.read()  # its last words
+
+
+def _pipe() -> tuple[Connection, Connection]:
+    try:
+        return multiprocessing.Pipe(duplex=False)
+    except OSError as error:
+        raise no_process(error) from error
 
 
 def _outcome(child: _Child, limits: Limits) -> RunRecord:

@@ -3,10 +3,10 @@
 import signal
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 DEAF_S = 10.0
 """Whoever is impatient presses Ctrl-C twice. What the first one began takes less."""
@@ -54,7 +54,20 @@ def ending_tidily() -> Iterator[None]:
         yield
     finally:
         for number, handler in before.items():
+            # Somebody impatient is not heard either while the process goes on to its end.
+            signal.signal(number, _deaf(handler) if asked_at else handler)
+
+
+def _deaf(handler: Any) -> Callable[[int, FrameType | None], None]:
+    """A handler that does nothing for DEAF_S, and then what another one does."""
+    since = time.monotonic()
+
+    def hear(number: int, _: FrameType | None) -> None:
+        if time.monotonic() > since + DEAF_S:
             signal.signal(number, handler)
+            signal.raise_signal(number)
+
+    return hear
 
 
 def _raise(number: int) -> NoReturn:

@@ -21,6 +21,16 @@ with ending_tidily():
 """
 
 
+@pytest.fixture(autouse=True)
+def _this_process_hears_as_before():
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    before = {number: signal.getsignal(number) for number in numbers}
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
 @pytest.mark.parametrize(
     ("number", "told"),
     [(signal.SIGINT, "SIGINT 130"), (signal.SIGTERM, "SIGTERM 143"), (signal.SIGHUP, "SIGHUP 129")],
@@ -59,3 +69,37 @@ def test_what_was_ignored_stays_ignored_and_all_is_as_before_afterwards():
         assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
     finally:
         signal.signal(signal.SIGHUP, before)
+
+
+IMPATIENT = (
+    PATIENT.replace("print(asked, asked.exit_code)", "pass")
+    + """
+print("done", flush=True)
+time.sleep(0.5)
+"""
+)
+
+
+def test_who_asks_again_while_the_process_ends_is_not_heard():
+    process = subprocess.Popen(
+        [sys.executable, "-c", IMPATIENT],
+        stdout=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    assert process.stdout.readline() == "ready\n"
+    process.send_signal(signal.SIGINT)
+    assert process.stdout.readline() == "asked\n"
+    assert process.stdout.readline() == "done\n"
+    process.send_signal(signal.SIGINT)
+    assert process.wait() == 0
+
+
+def test_much_later_it_is_heard_as_before(monkeypatch):
+    with pytest.raises(Asked), ending_tidily():
+        signal.raise_signal(signal.SIGINT)
+    signal.raise_signal(signal.SIGINT)
+    monkeypatch.setattr(endings, "DEAF_S", 0.0)
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

@@ -25,7 +25,9 @@ from tests.suite.harness.cluster.user_folder import write_user_folder
 
 @pytest.fixture
 def user(tmp_path, monkeypatch):
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(cache_folder().parents[1]))  # kernels need not compile anew
+    monkeypatch.setenv(
+        "NUMBA_CACHE_DIR", str(cache_folder().parents[1])
+    )  # kernels need not compile anew
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "there"))
     yield write_user_folder(tmp_path / "user", seeds=1)
     name_plugins([])
