@@ -32,9 +32,19 @@ def left_open(solid: MultiPolygon, drawn: Sequence[Polygon], coordinates: Coordi
     """
     closed = shapely.transform(solid, coordinates.local)
     shapely.prepare(closed)
-    inner = shapely.buffer(
-        [shapely.transform(polygon, coordinates.local) for polygon in drawn],
-        -MOST * coordinates.grid,
-        join_style="mitre",
+    local = np.array([shapely.transform(p, coordinates.local) for p in drawn], dtype=np.object_)
+    width = MOST * coordinates.grid
+    inner = shapely.buffer(local, -width, join_style="mitre")
+    # The quick test knows most; where nothing is left, or GEOS lost it, what is open is looked at.
+    doubtful = np.flatnonzero(~shapely.covers(closed, inner)).tolist()
+    return [i for i in doubtful if _is_wide(shapely.difference(local[i], closed), width)]
+
+
+def _is_wide(left: shapely.Geometry, width: float) -> bool:
+    """Whether a disc of a radius fits in any part of what is left, as far as GEOS can tell."""
+    parts = [part for part in shapely.get_parts(left) if isinstance(part, Polygon)]
+    return any(
+        not part.buffer(-width).is_empty
+        or part.exterior.distance(part.representative_point()) > width
+        for part in parts
     )
-    return np.flatnonzero(~shapely.covers(closed, inner)).tolist()

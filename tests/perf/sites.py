@@ -27,7 +27,7 @@ from suite.errors import SceneError
 from suite.geometry.kernels import first_collision
 from suite.planner import Budget, Planner, Recorder
 from suite.plugins.discovery import load_planner, planner_names
-from suite.referee.path import INTERIORS_MEET, Referee
+from suite.referee.path import Referee
 from suite.report.formats import render
 from suite.report.kinds import TableFormat
 from suite.report.table import Table
@@ -180,11 +180,9 @@ class Judges:
         around = twin.room.buffer(0.2 * twin.room.length).difference(twin.room)
         drawn = shapely.union_all([p.intersection(twin.room) for p in twin.buildings])
         self._drawn = drawn
-        closed = drawn.union(around)
-        self._inner = closed.buffer(-self._width, join_style="mitre")
-        self._outer = closed.buffer(self._width, join_style="mitre")
-        shapely.prepare(self._inner)
-        shapely.prepare(self._outer)
+        # Not as one: their union may lose a building, in 3 of 42,000 sites.
+        self._closed = (drawn, around)
+        shapely.prepare(self._closed)
 
     def has_lost(self) -> bool:
         """Whether something that was drawn, and lies in the room, is not closed."""
@@ -201,15 +199,25 @@ class Judges:
             i < j and not tree.geometries[i].intersects(tree.geometries[j]) for i, j in pairs.T
         )
 
+    def _is_deep(self, line: shapely.LineString) -> bool:
+        """Whether the middle of a stretch in what is closed lies deeper than the width."""
+        for closed in self._closed:
+            stretches = shapely.get_parts(line.intersection(closed))
+            stretches = stretches[shapely.get_dimensions(stretches) == 1]
+            middles = shapely.line_interpolate_point(stretches, 0.5, normalized=True)
+            if np.any(shapely.distance(middles, closed.boundary) > self._width):
+                return True
+        return False
+
     def agree(self, path: NDArray[np.float64]) -> bool:
         """Whether all have one opinion of a path, but for those that have none."""
         query = Query("drawn", path[0], path[-1])
         by_kernel = bool(first_collision(path, self._scene.arrays) < 0)
         by_referee = self._referee.judge(query, path).valid
         line = shapely.LineString(path - self._corner)
-        if shapely.relate_pattern(self._inner, line, INTERIORS_MEET):
+        if self._is_deep(line):
             return not by_kernel and not by_referee
-        if not self._outer.intersects(line):
+        if np.min(shapely.distance(self._closed, line)) > self._width:
             return by_kernel and by_referee
         # The kernel, exact, may see an entry that is shallower than GEOS rounds; never the other.
         return by_referee or not by_kernel

@@ -24,6 +24,19 @@ def test_a_lost_obstacle_is_found(place):
 
 
 @pytest.mark.parametrize("place", PLACES)
+def test_a_wall_of_the_grids_width_that_is_closed_is_no_fault(place):
+    grid = coordinates_of(translate(box(0, 0, 80, 60), *place).bounds).grid
+    wall = box(10, 10, 10 + 2 * grid, 50)
+    assert open_ones([wall], [wall], place) == []
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_a_gap_within_an_obstacle_is_found(place):
+    halves = [box(10, 10, 20, 50), box(20.001, 10, 30, 50)]
+    assert open_ones(halves, [box(10, 10, 30, 50)], place) == [0]
+
+
+@pytest.mark.parametrize("place", PLACES)
 def test_a_lost_corner_is_found_and_a_grids_width_is_none(place):
     drawn = [box(10, 10, 30, 50)]
     assert open_ones([drawn[0].difference(box(29.9999, 49.9999, 31, 51))], drawn, place) == [0]
