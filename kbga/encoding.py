@@ -28,8 +28,9 @@ class Lattice(NamedTuple):
     x0, y0 : float, the crossing number 0, metres.
     unit : float, spacing of the lines, metres.
     columns, rows : int, crossings in a row, and in a column.
-    origin_x, origin_y : float, where the grid of the scene's coordinates begins, metres.
-    cells : float, cells of that grid in a metre.
+    xs, ys : (columns,), (rows,) float64, where the lines lie, on the grid of the obstacles, metres:
+        a node on a wall or on the border stays there. 0.1 * 3 lies 5e-17 beyond 0.3, which would
+        be inside an obstacle that begins there.
     """
 
     x0: float
@@ -37,9 +38,8 @@ class Lattice(NamedTuple):
     unit: float
     columns: int
     rows: int
-    origin_x: float
-    origin_y: float
-    cells: float
+    xs: NDArray[np.float64]
+    ys: NDArray[np.float64]
 
 
 def make_lattice(
@@ -64,31 +64,24 @@ def make_lattice(
     unit = max(unit, math.sqrt(width * height) / FINEST)
     # What rounding leaves off the last line is no reason to leave off the line.
     columns, rows = (int(side / unit + ROUNDING) + 1 for side in (width, height))
-    grid = coordinates_of(bounds)
-    return Lattice(xmin, ymin, unit, columns, rows, *grid.origin, float(10**grid.decimals))
-
-
-@kernel
-def _on_grid(x: float, origin: float, cells: float) -> float:
-    """Coordinate on the grid of the obstacles, so that a node on a wall or the border stays there.
-
-    0.1 * 3 lies 5e-17 beyond 0.3: without this, inside an obstacle that begins there.
-    """
-    return origin + np.rint(x * cells) / cells
+    lines = unit * np.arange(max(columns, rows))
+    places = coordinates_of(bounds).snapped(np.column_stack([xmin + lines, ymin + lines]))
+    xs, ys = np.array(places[:columns, 0]), np.array(places[:rows, 1])
+    xs.setflags(write=False)
+    ys.setflags(write=False)
+    return Lattice(xmin, ymin, unit, columns, rows, xs, ys)
 
 
 @kernel
 def node_x(lattice: Lattice, node: int) -> float:
     """Coordinate x of a lattice number, metres."""
-    x = lattice.x0 - lattice.origin_x + lattice.unit * (node % lattice.columns)
-    return _on_grid(x, lattice.origin_x, lattice.cells)
+    return lattice.xs[node % lattice.columns]
 
 
 @kernel
 def node_y(lattice: Lattice, node: int) -> float:
     """Coordinate y of a lattice number, metres."""
-    y = lattice.y0 - lattice.origin_y + lattice.unit * (node // lattice.columns)
-    return _on_grid(y, lattice.origin_y, lattice.cells)
+    return lattice.ys[node // lattice.columns]
 
 
 @kernel

@@ -113,10 +113,8 @@ def _places(
     """Lattice numbers in a room that does not fill its bounds: the grid lies over the workspace."""
     if room is None or room.equals(shapely.box(*bounds)):
         return np.empty(0, np.int64)
-    x = lattice.x0 + lattice.unit * np.arange(lattice.columns)
-    y = lattice.y0 + lattice.unit * np.arange(lattice.rows)
     shapely.prepare(room)
-    inside = shapely.intersects_xy(room, *np.meshgrid(x, y))
+    inside = shapely.intersects_xy(room, *np.meshgrid(lattice.xs, lattice.ys))
     return np.flatnonzero(inside.ravel())
 
 
