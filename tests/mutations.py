@@ -11,6 +11,7 @@ import json
 import math
 import random
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 Place = tuple[Any, Any]
@@ -184,3 +185,12 @@ def _toml(value: Any) -> str:
     if isinstance(value, str):
         return json.dumps(value)
     return str(value)  # numbers and dates
+
+
+def check_words(error: Exception, file: Path, longest: int) -> None:
+    """A file that went wrong is named, in a line or two that can be read at a terminal."""
+    message = str(error)
+    assert file.name in message
+    assert len(message.splitlines()) <= 2, message
+    assert len(message) <= longest, message
+    assert message.replace("\n", "").isprintable(), message

@@ -4,7 +4,6 @@ import random
 import tomllib
 import warnings
 from functools import cache
-from pathlib import Path
 
 import pytest
 
@@ -15,7 +14,7 @@ from suite.harness.matrix_file import FOLDER, matrix_file, matrix_names
 from suite.plugins.discovery import planner_info
 from suite.scenes.catalogue import load_scene
 from suite.scenes.scene import SceneWarning
-from tests.mutations import as_toml, mutated_bytes, mutated_document
+from tests.mutations import as_toml, check_words, mutated_bytes, mutated_document
 
 SAMPLE, ALL = 100, 1000
 AT_A_TIME = 50
@@ -76,18 +75,12 @@ def test_a_matrix_that_went_wrong_is_an_error_or_a_right_matrix(first, folder):
             try:
                 found = load_matrix(file)
             except MatrixError as error:
-                check_words(str(error), file)
+                check_words(error, file, LONGEST)
                 outcomes["error"] += 1
             else:
                 check_right(found)
                 outcomes["matrix"] += 1
     assert min(outcomes.values()) > 0, outcomes
-
-
-def check_words(message: str, file: Path) -> None:
-    assert file.name in message
-    assert len(message.splitlines()) <= 2, message
-    assert len(message) <= LONGEST, message
 
 
 def check_right(found: matrix_module.Matrix) -> None:

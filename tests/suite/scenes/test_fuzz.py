@@ -16,7 +16,7 @@ from suite.scenes.catalogue import aligned_names, dynamic_names, scene_file, sce
 from suite.scenes.exact import shortest_path
 from suite.scenes.geojson import read_scene, write_scene
 from suite.scenes.scene import Scene, SceneWarning, scene_at
-from tests.mutations import as_json, mutated_bytes, mutated_document
+from tests.mutations import as_json, check_words, mutated_bytes, mutated_document
 
 SAMPLE, ALL = 100, 2000
 AT_A_TIME = 50
@@ -91,20 +91,13 @@ def test_a_scene_file_that_went_wrong_is_an_error_or_a_right_scene(first, tmp_pa
             try:
                 scene = read_scene(file)
             except SceneError as error:
-                check_words(str(error), file)
+                check_words(error, file, LONGEST)
                 outcomes["error"] += 1
             else:
                 check_right(scene, tmp_path / "again.geojson")
                 outcomes["scene"] += 1
     # Mutations that nobody notices, or that leave nothing to be read, would test nothing.
     assert min(outcomes.values()) > 0, outcomes
-
-
-def check_words(message: str, file: Path) -> None:
-    assert file.name in message
-    assert len(message.splitlines()) <= 2, message
-    assert len(message) <= LONGEST, message
-    assert message.isprintable() or "\n" in message, message
 
 
 def check_right(scene: Scene, file: Path) -> None:
