@@ -29,6 +29,7 @@ class Format:
 
 
 FORMATS = {
+    ".mesh": Format("polygon mesh", "suite.scenes.maps.mesh:read_mesh"),
     ".wkt": Format("well-known text", "suite.scenes.maps.wkt:read_wkt"),
 }
 
