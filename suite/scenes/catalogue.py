@@ -17,7 +17,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from suite.errors import SceneError, did_you_mean
-from suite.scenes.geojson import read_scene
+from suite.scenes.geojson import read_scene, stated_radius
 from suite.scenes.maps.formats import FORMATS, read_map
 from suite.scenes.maps.options import OPTIONS, MapOptions
 from suite.scenes.modifiers import MARK, PATHS, parse_modifiers, split_modifiers
@@ -159,7 +159,7 @@ def scene_file(name: str) -> Path:
     return _FOLDER / f"{name}.geojson"
 
 
-def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
+def load_scene(name_or_path: str | Path, *, inflate: float | None = None) -> Scene:
     """Load a scene of the catalogue, or one of your own.
 
     Parameters
@@ -169,8 +169,9 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
         :func:`generated_names`, or a scene file; with or without modifiers behind an ``@``, see
         :mod:`suite.scenes.modifiers`. A string with a path separator or with the suffix of a scene
         file (``.geojson``, ``.json``) is a path. A Path has no modifiers.
-    inflate : float
-        Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`.
+    inflate : float, optional
+        Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`. Default: that of
+        the modifier, or the one that the file states, or none.
 
     Returns
     -------
@@ -192,25 +193,32 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
         base, text = split_modifiers(name_or_path)
         if text:
             modifiers = parse_modifiers(text, name_or_path)
-            radius = inflate or modifiers.radius
+            radius = modifiers.radius if inflate is None else inflate
             if modifiers.moves:
-                return modified(_unmodified(base, modifiers.options), modifiers, inflate=radius)
+                radius = _stated_radius(base) if radius is None else radius
+                scene = _unmodified(base, modifiers.options, 0.0)
+                return modified(scene, modifiers, inflate=radius)
             scene = _unmodified(base, modifiers.options, radius)
             return replace(scene, name=f"{scene.name}{MARK}{modifiers.text}")
     return _unmodified(name_or_path, MapOptions(), inflate)
 
 
-def _unmodified(name_or_path: str | Path, options: MapOptions, inflate: float = 0.0) -> Scene:
+def _stated_radius(name_or_path: str) -> float:
+    is_scene_file = Path(name_or_path).suffix.lower() not in FORMATS and _is_path(name_or_path)
+    return stated_radius(Path(name_or_path)) if is_scene_file else 0.0
+
+
+def _unmodified(name_or_path: str | Path, options: MapOptions, inflate: float | None) -> Scene:
     if _is_path(name_or_path):
         path = Path(name_or_path)
         if path.suffix.lower() in FORMATS:
-            return read_map(path, options, inflate=inflate)
+            return read_map(path, options, inflate=inflate or 0.0)
         _refuse(options, path.name)
         return read_scene(path, inflate=inflate)
     name = str(name_or_path)
     _refuse(options, name)
     if _is_generated(name):
-        return _inflated(_generated(name), inflate)
+        return _inflated(_generated(name), inflate or 0.0)
     return read_scene(scene_file(name), inflate=inflate)
 
 

@@ -18,8 +18,8 @@ the ``@`` stand, in any order and each at most once:
     Of the robot, metres: the obstacles grow by it, after all else, and the workspace shrinks.
 
 And of maps alone, how they are read, see :class:`suite.scenes.maps.options.MapOptions`:
-``unknown=free`` or ``unknown=occupied``, ``resolution=METRES`` of a pixel, ``threshold=SHARE`` and
-``simplify=METRES``.
+``unknown=free`` or ``unknown=occupied``, ``resolution=METRES`` of a pixel, ``threshold=SHARE``,
+``layer=NAME`` and ``simplify=METRES``.
 
 Workspace, obstacles, starts and goals move as one: the problem stays the same, and so does its
 optimum, but for the scale. Only what a planner lays over the plane itself, a lattice say, meets
@@ -61,7 +61,7 @@ class Modifiers:
     turn : degrees, counter-clockwise.
     shift : (dx, dy), metres.
     scale : factor on lengths, above 0.
-    radius : of the robot, metres.
+    radius : of the robot, metres; None if nothing is said of it.
     options : how the map is read.
     """
 
@@ -69,7 +69,7 @@ class Modifiers:
     turn: float = 0.0
     shift: tuple[float, float] = (0.0, 0.0)
     scale: float = 1.0
-    radius: float = 0.0
+    radius: float | None = None
     options: MapOptions = field(default_factory=MapOptions)
 
     @property
@@ -102,6 +102,27 @@ def split_modifiers(name: str) -> tuple[str, str]:
     return base, text
 
 
+def with_modifiers(name: str, values: Mapping[str, object]) -> str:
+    """A name with more modifiers behind it; those of no value are left out.
+
+    Examples
+    --------
+    >>> with_modifiers("zigzag", {"radius": 0.2}), with_modifiers("zigzag@turn=17", {"scale": 2})
+    ('zigzag@radius=0.2', 'zigzag@turn=17,scale=2')
+    >>> with_modifiers("zigzag", {"radius": None})
+    'zigzag'
+    """
+    said = {key: _briefly(value) for key, value in values.items() if value is not None}
+    text = ",".join(f"{key}={value}" for key, value in said.items())
+    mark = "," if split_modifiers(name)[1] else MARK
+    return f"{name}{mark}{text}" if text else name
+
+
+def _briefly(value: object) -> str:
+    """A value as people write it: options are parsed to floats, and 1.0 is written 1."""
+    return str(int(value)) if isinstance(value, float) and value.is_integer() else str(value)
+
+
 def parse_modifiers(text: str, where: str) -> Modifiers:
     """Read the modifiers of a scene.
 
@@ -126,7 +147,7 @@ def parse_modifiers(text: str, where: str) -> Modifiers:
     --------
     >>> found = parse_modifiers("shift=0.37,turn=17", "zigzag")
     >>> found.text, found.turn, found.shift, found.scale, found.radius
-    ('shift=0.37,turn=17', 17.0, (0.37, 0.0), 1.0, 0.0)
+    ('shift=0.37,turn=17', 17.0, (0.37, 0.0), 1.0, None)
     """
     pairs = _pairs(text, where)
     turn = _number(pairs["turn"], "turn", where) if "turn" in pairs else 0.0
@@ -140,7 +161,7 @@ def parse_modifiers(text: str, where: str) -> Modifiers:
         turn,
         shift,
         scale,
-        _not_negative(pairs["radius"], "radius", where) if "radius" in pairs else 0.0,
+        _not_negative(pairs["radius"], "radius", where) if "radius" in pairs else None,
         _options({key: value for key, value in pairs.items() if key in OPTIONS}, where),
     )
 
@@ -169,6 +190,7 @@ _EXAMPLES = {
     "unknown": "unknown=occupied or unknown=free",
     "resolution": "resolution=0.05, metres of a pixel, above 0",
     "threshold": "threshold=0.65, the share of black from which a pixel is occupied, above 0",
+    "layer": "layer=buildings, its name",
     "simplify": "simplify=0.1, metres, above 0",
 }
 
@@ -206,7 +228,11 @@ def _above_zero(value: str, key: str, where: str) -> float:
 
 
 def _options(given: Mapping[str, str], where: str) -> MapOptions:
-    read: dict[str, Any] = {k: _above_zero(v, k, where) for k, v in given.items() if k != "unknown"}
+    words = ("unknown", "layer")
+    read: dict[str, Any] = {
+        key: value if key in words else _above_zero(value, key, where)
+        for key, value in given.items()
+    }
     if "unknown" in given:
         try:
             read["unknown"] = Unknown(given["unknown"])

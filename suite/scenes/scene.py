@@ -230,6 +230,7 @@ def make_scene(
     inflate: float = 0.0,
     strata: Mapping[str, str] | None = None,
     keep_blocked: bool = False,
+    grown_by: float = 0.0,
 ) -> Scene:
     """Check and normalise the pieces of a scene, and put them together.
 
@@ -254,6 +255,8 @@ def make_scene(
     strata : mapping from name of a query to name of its stratum, optional
     keep_blocked : bool
         Keep queries whose ends are not free at time 0, blocked, whatever the radius.
+    grown_by : float
+        Radius of the robot by which the pieces have grown already, metres.
 
     Returns
     -------
@@ -311,12 +314,12 @@ def make_scene(
         ),
         properties=MappingProxyType(_still_true(properties or {}, inflate)),
         path=path,
-        radius=inflate,
+        radius=grown_by + inflate,
     )
     _check_closed(where, scene)
     asked = tuple(_asked(where, scene, query) for query in scene.queries)
     for query in asked:
-        if query.blocked is not None and not (keep_blocked or inflate > 0.0):
+        if query.blocked is not None and not (keep_blocked or scene.radius > 0.0):
             raise SceneError(query.blocked)
     # Not a copy: the arrangement, which is kept with the scene, took its time.
     object.__setattr__(scene, "queries", asked)

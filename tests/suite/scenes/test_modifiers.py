@@ -50,7 +50,7 @@ def test_twins_are_turned_all_round_and_shifted_by_up_to_a_metre():
         (
             "trun=17",
             "no modifier 'trun'. It takes turn, shift, scale, twin, radius, unknown, resolution, "
-            "threshold, simplify. Did you mean 'turn'?",
+            "threshold, layer, simplify. Did you mean 'turn'?",
         ),
         ("radius=-1", "radius is '-1'. Write radius=0.2, in metres, of 0 or more."),
         ("unknown=maybe", "unknown is 'maybe'. Write unknown=occupied or unknown=free."),
