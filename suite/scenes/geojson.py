@@ -40,10 +40,10 @@ Members of the collection that the suite reads: ``name`` (default: the file's na
 ``figure``, ``paper_best``, ``reconstruction`` and ``optimum`` (from query name to exact optimal
 length, metres: what the file says of itself, for a reader; results are measured by the one that is
 computed), ``radius`` (of the robot, metres: obstacles grow by it when the file is read) and
-``grown_by`` (such a radius by which they have grown already); of a dynamic scene also ``world``, the default settings of its simulation (see
-:class:`suite.simulation.settings.WorldSettings`), and ``gates``, from a name to a segment
-``[[x, y], [x, y]]`` across an opening, so that a run can say which one the robot passed. Others
-are kept. Any JSON, GIS or shapely tool reads the file.
+``grown_by`` (such a radius by which they have grown already); of a dynamic scene also ``world``,
+the default settings of its simulation (see :class:`suite.simulation.settings.WorldSettings`), and
+``gates``, from a name to a segment ``[[x, y], [x, y]]`` across an opening, so that a run can say
+which one the robot passed. Others are kept. Any JSON, GIS or shapely tool reads the file.
 
 Whatever may be left out may be null, as geopandas writes it, and names may be empty, as QGIS does.
 """

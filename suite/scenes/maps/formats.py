@@ -30,6 +30,7 @@ class Format:
 
 FORMATS = {
     ".mesh": Format("polygon mesh", "suite.scenes.maps.mesh:read_mesh"),
+    ".svg": Format("SVG", "suite.scenes.maps.svg:read_svg", ("threshold",)),
     ".wkt": Format("well-known text", "suite.scenes.maps.wkt:read_wkt"),
 }
 

@@ -3,4 +3,4 @@
 Apart from it, so that a name is understood without any of the libraries that read maps.
 """
 
-MAP_SUFFIXES: tuple[str, ...] = (".mesh", ".wkt")
+MAP_SUFFIXES: tuple[str, ...] = (".mesh", ".svg", ".wkt")
