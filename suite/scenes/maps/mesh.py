@@ -10,7 +10,7 @@ lie its queries, in ``FILE.mesh.scen`` or ``FILE.scen``; their lengths are those
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import TypeVar
@@ -25,7 +25,8 @@ from suite.geometry.tolerances import LARGEST
 from suite.scenes.maps.drawing import Drawing
 from suite.scenes.maps.options import MapOptions
 from suite.scenes.maps.polygons import solids
-from suite.scenes.maps.scenarios import read_scenarios, scenario_file
+from suite.scenes.maps.scen import read_scen, scen_beside
+from suite.scenes.maps.text import read_lines
 
 VERSIONS = ("2", "3")
 
@@ -54,8 +55,8 @@ def read_mesh(path: Path, options: MapOptions) -> Drawing:  # noqa: ARG001 (none
     Returns
     -------
     Drawing
-        Its queries are named by their number in the file, from 1; its properties hold their
-        published lengths, which are those of Euclidean shortest paths.
+        Its properties hold the published lengths of its queries, which are those of Euclidean
+        shortest paths.
 
     Raises
     ------
@@ -78,11 +79,7 @@ class _Numbers:
     """The numbers of a file in turn, whatever white space lies between, each read as what it is."""
 
     def __init__(self, path: Path) -> None:
-        try:
-            text = path.read_text(encoding="utf-8-sig")
-        except (OSError, UnicodeDecodeError) as error:
-            raise SceneError(f"{path.name}: can't be read as text ({error}).") from error
-        lines = (line.partition("//")[0] for line in text.splitlines())  # comments of version 3
+        lines = (line.partition("//")[0] for line in read_lines(path))  # comments of version 3
         self._words: Iterator[str] = (word for line in lines for word in line.split())
         self._name = path.name
         self._version = ""
@@ -211,17 +208,16 @@ def _united(path: Path, free: list[_Cell], xy: NDArray[np.float64]) -> shapely.G
 
 
 def _with_queries(path: Path, drawing: Drawing) -> Drawing:
-    file = scenario_file(path)
+    file = scen_beside(path)
     if file is None:
         return drawing
-    scenarios = read_scenarios(file)
-    return Drawing(
-        drawing.workspace,
-        drawing.obstacles,
-        queries={s.name: (s.start, s.goal) for s in scenarios},
-        strata={s.name: s.bucket for s in scenarios},
+    asked = read_scen(file)
+    return replace(
+        drawing,
+        queries={query.name: (query.start, query.goal) for query in asked},
+        strata={query.name: query.bucket for query in asked},
         properties={
-            "published": {s.name: s.length for s in scenarios},
+            "published": {query.name: query.length for query in asked},
             "published_as": "euclidean",
         },
     )
