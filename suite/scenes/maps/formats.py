@@ -28,7 +28,16 @@ class Format:
     options: tuple[str, ...] = ()
 
 
+_IMAGE = Format(
+    "images", "suite.scenes.maps.image:read_image", ("resolution", "threshold", "simplify")
+)
+_ROS = Format("ROS map_server", "suite.scenes.maps.ros:read_ros", ("unknown", "simplify"))
+
 FORMATS = {
+    **dict.fromkeys((".png", ".pgm", ".bmp", ".jpg", ".jpeg", ".tif", ".tiff"), _IMAGE),
+    **dict.fromkeys((".yaml", ".yml"), _ROS),
+    ".map": Format("Moving AI's grids", "suite.scenes.maps.moving_ai:read_grid", ("simplify",)),
+    ".scen": Format("their queries", "suite.scenes.maps.moving_ai:read_queries", ("simplify",)),
     ".wkt": Format("well-known text", "suite.scenes.maps.wkt:read_wkt"),
 }
 
