@@ -18,9 +18,10 @@ from pathlib import Path
 
 from suite.errors import SceneError, did_you_mean
 from suite.scenes.geojson import read_scene, stated_radius
-from suite.scenes.maps.formats import FORMATS, read_map
+from suite.scenes.maps.features import knows_no_roles
+from suite.scenes.maps.formats import FORMATS, WITHOUT_ROLES, read_map, understood
 from suite.scenes.maps.options import OPTIONS, MapOptions
-from suite.scenes.modifiers import MARK, PATHS, parse_modifiers, split_modifiers
+from suite.scenes.modifiers import MARK, PATHS, SUFFIXES, parse_modifiers, split_modifiers
 from suite.scenes.moving import moving, moving_name, parse_moving_name
 from suite.scenes.scattered import parse_scattered_name, scattered, scattered_name
 from suite.scenes.scene import Query, Scene, make_scene, scene_fingerprint
@@ -213,6 +214,10 @@ def _unmodified(name_or_path: str | Path, options: MapOptions, inflate: float | 
         path = Path(name_or_path)
         if path.suffix.lower() in FORMATS:
             return read_map(path, options, inflate=inflate or 0.0)
+        if knows_no_roles(path):
+            return read_map(path, options, inflate=inflate or 0.0, form=WITHOUT_ROLES)
+        if path.suffix and path.suffix.lower() not in SUFFIXES and not _looks_like_json(path):
+            raise SceneError(f"{path}: {_no_format(path)}")
         _refuse(options, path.name)
         return read_scene(path, inflate=inflate)
     name = str(name_or_path)
@@ -220,6 +225,19 @@ def _unmodified(name_or_path: str | Path, options: MapOptions, inflate: float | 
     if _is_generated(name):
         return _inflated(_generated(name), inflate or 0.0)
     return read_scene(scene_file(name), inflate=inflate)
+
+
+def _looks_like_json(path: Path) -> bool:
+    """Whether a file of any suffix is to be read as a scene file: one that is missing is, too."""
+    try:
+        with path.open("rb") as file:
+            return file.read(1000).removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{")
+    except OSError:
+        return True
+
+
+def _no_format(path: Path) -> str:
+    return f"no format of maps has the suffix '{path.suffix[:20]}'. {understood()}"
 
 
 def _refuse(options: MapOptions, where: str) -> None:
@@ -290,6 +308,8 @@ def _inflated(scene: Scene, inflate: float) -> Scene:
 
 
 def _unknown(name: str) -> str:
+    if Path(name).suffix:
+        return f"no scene '{name}', and {_no_format(Path(name))}"
     message = (
         f"no scene '{name}'. Catalogue: {', '.join(_PAPER_ORDER)}. Dynamic: {', '.join(_DYNAMIC)}. "
         f"Generated: {', '.join(generated_names())}, or scattered_N-S for N obstacles and seed S, "

@@ -19,12 +19,13 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from suite.errors import SceneError
 from suite.geometry.tolerances import LARGEST
 from suite.scenes.maps.drawing import Drawing
 from suite.scenes.maps.options import MapOptions
-from suite.scenes.maps.polygons import solids
+from suite.scenes.maps.polygons import drawing_of, solids
 from suite.scenes.maps.scen import read_scen, scen_beside
 from suite.scenes.maps.text import read_lines
 
@@ -49,7 +50,7 @@ class _Cell:
     closed: tuple[tuple[int, int], ...]
 
 
-def read_mesh(path: Path, options: MapOptions) -> Drawing:  # noqa: ARG001 (none is of its kind)
+def read_mesh(path: Path, options: MapOptions) -> Drawing:
     """Read a polygon mesh of version 2 or 3, and the queries beside it.
 
     Returns
@@ -72,7 +73,13 @@ def read_mesh(path: Path, options: MapOptions) -> Drawing:  # noqa: ARG001 (none
     _refuse_thin_walls(path, free)
     space = _united(path, free, xy)
     room = shapely.box(*space.bounds)
-    return _with_queries(path, Drawing(room, solids(room.difference(space))))
+    drawing = drawing_of(
+        room,
+        solids(room.difference(space)),
+        simplify=options.simplify,
+        properties={"format": f"polygon mesh {numbers.version}", "cells": cells},
+    )
+    return _with_queries(path, drawing)
 
 
 class _Numbers:
@@ -82,16 +89,16 @@ class _Numbers:
         lines = (line.partition("//")[0] for line in read_lines(path))  # comments of version 3
         self._words: Iterator[str] = (word for line in lines for word in line.split())
         self._name = path.name
-        self._version = ""
+        self.version = ""
 
     def header(self) -> None:
         """Read ``mesh`` and the version."""
         if next(self._words, "") != "mesh":
             raise SceneError(f"{self._name}: no polygon mesh. Its first line is 'mesh'.")
-        self._version = next(self._words, "")
-        if self._version not in VERSIONS:
+        self.version = next(self._words, "")
+        if self.version not in VERSIONS:
             raise SceneError(
-                f"{self._name}: a mesh of version {self._version[:20]!r}. Give one of version "
+                f"{self._name}: a mesh of version {self.version[:20]!r}. Give one of version "
                 f"{' or '.join(VERSIONS)}, as the second line says."
             )
 
@@ -111,14 +118,14 @@ class _Numbers:
                 f"{self._name}, {what}: ({x}, {y}). Coordinates must be finite numbers, in metres, "
                 f"up to {LARGEST:g}."
             )
-        if self._version == "2":
+        if self.version == "2":
             self._several(self._next(int, what), what)
         return x, y
 
     def cell(self, index: int, vertices: int) -> _Cell | None:
         """Read a cell; None if it is not free."""
         what = f"cell {index + self._first}"
-        free = self._version == "2" or self._next(int, what) != 0
+        free = self.version == "2" or self._next(int, what) != 0
         sides = self._next(int, what)
         if sides < 3:
             raise SceneError(f"{self._name}, {what}: {sides} vertices. A cell has three or more.")
@@ -128,7 +135,7 @@ class _Numbers:
             if not self._first <= corner < vertices + self._first:
                 raise SceneError(
                     f"{self._name}, {what}: there is no vertex {corner}. They are numbered from "
-                    f"{self._first} to {vertices - 1 + self._first} in version {self._version}."
+                    f"{self._first} to {vertices - 1 + self._first} in version {self.version}."
                 )
         own = tuple(corner - self._first for corner in corners)
         # The neighbour of an edge stands where the edge ends.
@@ -147,10 +154,10 @@ class _Numbers:
 
     @property
     def _first(self) -> int:
-        return 0 if self._version == "2" else 1
+        return 0 if self.version == "2" else 1
 
     def _is_shut(self, neighbour: int) -> bool:
-        return neighbour < 0 if self._version == "2" else neighbour <= 0
+        return neighbour < 0 if self.version == "2" else neighbour <= 0
 
     def _several(self, count: int, what: str) -> list[int]:
         words = list(islice(self._words, max(0, count)))
@@ -186,7 +193,7 @@ def _refuse_thin_walls(path: Path, free: list[_Cell]) -> None:
                 )
 
 
-def _united(path: Path, free: list[_Cell], xy: NDArray[np.float64]) -> shapely.Geometry:
+def _united(path: Path, free: list[_Cell], xy: NDArray[np.float64]) -> BaseGeometry:
     cells = np.array([Polygon(xy[list(cell.vertices)]) for cell in free], dtype=object)
     areas = shapely.area(cells)
     wrong = np.flatnonzero(~shapely.is_valid(cells) & (areas > 0.0))
@@ -217,6 +224,7 @@ def _with_queries(path: Path, drawing: Drawing) -> Drawing:
         queries={query.name: (query.start, query.goal) for query in asked},
         strata={query.name: query.bucket for query in asked},
         properties={
+            **drawing.properties,
             "published": {query.name: query.length for query in asked},
             "published_as": "euclidean",
         },

@@ -2,20 +2,39 @@
 
 import warnings
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 import shapely
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from suite.errors import SceneError
 from suite.scenes.maps.drawing import Drawing
+from suite.scenes.maps.simplify import simplified
 from suite.scenes.scene import SceneWarning
 
 _KINDS = {"Point": "point", "LineString": "line", "LinearRing": "line"}
 
 
-def solids(geometry: shapely.Geometry) -> tuple[Polygon, ...]:
+def drawing_of(
+    workspace: Polygon,
+    obstacles: Iterable[Polygon],
+    *,
+    simplify: float | None,
+    properties: Mapping[str, Any] | None = None,
+) -> Drawing:
+    """A map of a workspace and obstacles, with fewer vertices if that is wanted."""
+    kept = tuple(obstacles)
+    if simplify is not None:
+        kept = tuple(
+            simplified(polygon, simplify) if polygon.is_valid else polygon for polygon in kept
+        )
+    return Drawing(workspace, kept, properties=properties or {})
+
+
+def solids(geometry: BaseGeometry) -> tuple[Polygon, ...]:
     """The polygons with an area in a geometry, however deep its collections are nested.
 
     Examples
@@ -27,7 +46,13 @@ def solids(geometry: shapely.Geometry) -> tuple[Polygon, ...]:
     return tuple(p for p in _parts(geometry) if isinstance(p, Polygon) and p.area > 0.0)
 
 
-def obstacles_in_their_box(path: Path, geometries: Iterable[shapely.Geometry | None]) -> Drawing:
+def obstacles_in_their_box(
+    path: Path,
+    geometries: Iterable[BaseGeometry | None],
+    *,
+    simplify: float | None,
+    properties: Mapping[str, Any] | None = None,
+) -> Drawing:
     """A map of which each polygon is an obstacle, and their box the workspace.
 
     Lines and points have no area to be in the way with: they are left out, with a
@@ -52,10 +77,11 @@ def obstacles_in_their_box(path: Path, geometries: Iterable[shapely.Geometry | N
         warnings.warn(
             f"{path.name}: {told} left out: obstacles are polygons.", SceneWarning, stacklevel=2
         )
-    return Drawing(shapely.box(*shapely.total_bounds(polygons)), polygons)
+    room = shapely.box(*shapely.total_bounds(polygons))
+    return drawing_of(room, polygons, simplify=simplify, properties=properties)
 
 
-def _parts(geometry: shapely.Geometry) -> list[shapely.Geometry]:
+def _parts(geometry: BaseGeometry) -> list[BaseGeometry]:
     """Points, lines and polygons of a geometry that are not empty."""
     if geometry.is_empty:
         return []

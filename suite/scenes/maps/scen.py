@@ -1,5 +1,6 @@
 """Moving AI's queries: a .scen file, a query a line, beside the map that they are asked of."""
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,8 +26,8 @@ class Asked:
     name: str
     bucket: str
     map: str
-    width: int
-    height: int
+    width: float
+    height: float
     start: Point
     goal: Point
     length: float
@@ -85,15 +86,15 @@ def _asked(path: Path, line: int, row: list[str], number: int) -> Asked:
         raise SceneError(
             f"{path.name}, line {line}: no query. Give {FIELDS}, the last seven in numbers."
         )
-    if not bucket.isdecimal():
+    if not re.fullmatch("[0-9]{1,9}", bucket):
         raise SceneError(f"{path.name}, line {line}: bucket is '{bucket[:40]}'. Give a number.")
     width, height, x, y, to_x, to_y, length = told
     return Asked(
         name=f"{int(bucket)}-{number}",
         bucket=str(int(bucket)),
         map=name,
-        width=int(width),
-        height=int(height),
+        width=width,
+        height=height,
         start=(x, y),
         goal=(to_x, to_y),
         length=length,

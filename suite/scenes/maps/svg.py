@@ -21,7 +21,7 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 from xml.etree import ElementTree
 
 import numpy as np
@@ -29,6 +29,7 @@ import shapely
 import svgelements
 from numpy.typing import NDArray
 from shapely.geometry import LinearRing, LineString, MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from suite.errors import SceneError
 from suite.geometry.tolerances import LARGEST
@@ -36,7 +37,7 @@ from suite.scenes.maps.curves import Line, lines_of
 from suite.scenes.maps.drawing import Drawing
 from suite.scenes.maps.fill import filled
 from suite.scenes.maps.options import MapOptions
-from suite.scenes.maps.polygons import solids
+from suite.scenes.maps.polygons import drawing_of, solids
 from suite.scenes.scene import SceneWarning
 
 FLATNESS = 1e-4
@@ -53,8 +54,16 @@ NAMESPACE = "{http://www.w3.org/2000/svg}"
 _TEMPLATES = ("symbol", "marker", "mask")
 """Elements whose content is shown only where another one refers to it."""
 
-_CAPS = {"butt": "flat", "round": "round", "square": "square"}
-_JOINS = {"miter": "mitre", "round": "round", "bevel": "bevel"}
+_CAPS: dict[str, Literal["flat", "round", "square"]] = {
+    "butt": "flat",
+    "round": "round",
+    "square": "square",
+}
+_JOINS: dict[str, Literal["mitre", "round", "bevel"]] = {
+    "miter": "mitre",
+    "round": "round",
+    "bevel": "bevel",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +102,7 @@ def read_svg(path: Path, options: MapOptions) -> Drawing:
     page = page or _box(path, shapes)
     room = shapely.box(0.0, 0.0, page.width, page.height)
     floor = DARKEST_FLOOR if options.threshold is None else options.threshold
-    painted: list[shapely.Geometry] = []
+    painted: list[BaseGeometry] = []
     for shape in shapes:
         for area, dark in _areas(path, shape, page, floor):
             if dark:
@@ -106,7 +115,7 @@ def read_svg(path: Path, options: MapOptions) -> Drawing:
             f"{path.name}: nothing on its page is painted darker than {floor:g} of black. "
             "Give its obstacles a fill or a stroke, or name a lower threshold."
         )
-    return Drawing(room, obstacles)
+    return drawing_of(room, obstacles, simplify=options.simplify, properties={"format": "SVG"})
 
 
 def _root(path: Path) -> ElementTree.Element:
@@ -216,9 +225,7 @@ def _box(path: Path, shapes: list[Any]) -> Page:
     return Page(float(x), float(y), float(right - x), float(bottom - y))
 
 
-def _areas(
-    path: Path, shape: Any, page: Page, floor: float
-) -> Iterator[tuple[shapely.Geometry, bool]]:
+def _areas(path: Path, shape: Any, page: Page, floor: float) -> Iterator[tuple[BaseGeometry, bool]]:
     """What the fill and the stroke of a shape cover, metres, and whether each is dark."""
     m = shape.transform
     linear, shift = np.array([[m.a, m.c], [m.b, m.d]], dtype=np.float64), np.array([m.e, m.f])
@@ -235,7 +242,7 @@ def _areas(
     if not all(np.abs(line.points @ linear.T + shift).max() <= LARGEST for line in lines):
         raise SceneError(f"{path.name}{_named(shape)}: lies too far off, beyond {LARGEST:g}.")
 
-    def placed(area: shapely.Geometry) -> shapely.Geometry:
+    def placed(area: BaseGeometry) -> BaseGeometry:
         return shapely.transform(area, lambda xy: page.metres(xy @ linear.T + shift))
 
     (fill, fill_opacity), (stroke, stroke_opacity) = paints
@@ -267,7 +274,7 @@ def _paint(colour: Any, shape: Any) -> tuple[float, float]:
     return (1.0 - luminance) * opacity, opacity
 
 
-def _band(shape: Any, lines: list[Line], width: float, tolerance: float) -> shapely.Geometry:
+def _band(shape: Any, lines: list[Line], width: float, tolerance: float) -> BaseGeometry:
     """What a stroke covers, before the shape is transformed."""
     style = shape.values
     cap = _CAPS.get(style.get("stroke-linecap", "butt"), "flat")

@@ -7,7 +7,7 @@ from suite.errors import SceneError
 
 
 def read_lines(path: Path) -> list[str]:
-    """The lines of a text file.
+    """The lines of a text file, however they end.
 
     Raises
     ------
@@ -15,7 +15,7 @@ def read_lines(path: Path) -> list[str]:
         If it can't be read, or is no text.
     """
     try:
-        return path.read_text(encoding="utf-8-sig").splitlines()
+        return path.read_text(encoding="utf-8-sig").split("\n")
     except UnicodeDecodeError as error:
         raise SceneError(f"{path.name}: is no text ({error.reason}). Save it as UTF-8.") from error
     except OSError as error:

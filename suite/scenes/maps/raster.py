@@ -1,0 +1,100 @@
+"""Images as arrays: how bright each pixel is, and how opaque."""
+
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, UnidentifiedImageError
+
+from suite.errors import SceneError
+
+KINDS = ("PNG", "PPM", "BMP", "JPEG", "TIFF")
+"""Of images, as Pillow names them; PPM has PGM in it."""
+
+MOST_PIXELS = 50_000_000
+"""Of an image, 7,000 x 7,000 for example: a small file may hold far more than there is memory."""
+
+SIXTEEN_BITS = ("I;16", "I;16B", "I;16L", "I;16N")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Raster:
+    """An image, the upper row first.
+
+    brightness : (rows, columns) float64, the mean of red, green and blue; 0 black, 1 white.
+    opacity : (rows, columns) float64, 0 transparent, 1 opaque; None if it says nothing of it.
+    """
+
+    brightness: NDArray[np.float64]
+    opacity: NDArray[np.float64] | None
+
+
+def read_raster(path: Path, where: str) -> Raster:
+    """Read an image.
+
+    Parameters
+    ----------
+    path : Path
+    where : str
+        What names it, for errors.
+
+    Raises
+    ------
+    SceneError
+        If it can't be read, is no image of those kinds, or too large.
+    """
+    try:
+        with warnings.catch_warnings():
+            # What Pillow warns of: sizes, of which our own limit is lower, and oddities of TIFF.
+            warnings.simplefilter("ignore")
+            with Image.open(path, formats=KINDS) as image:
+                _check_size(image, where)
+                return _raster(image, where)
+    except UnidentifiedImageError as error:
+        raise SceneError(f"{where}: is no image. Give one of {', '.join(KINDS)}.") from error
+    except Image.DecompressionBombError as error:
+        raise SceneError(f"{where}: {_too_large('of far more pixels')}") from error
+    except OSError as error:
+        if error.errno is not None:
+            raise SceneError(f"{where}: can't be read ({error.strerror}).") from error
+        raise SceneError(_damaged(where, error)) from error
+    except (ValueError, SyntaxError, TypeError, EOFError, LookupError, OverflowError) as error:
+        # Each of Pillow's readers has its own way to say that a file is damaged.
+        raise SceneError(_damaged(where, error)) from error
+
+
+def _damaged(where: str, error: Exception) -> str:
+    words = " ".join(str(error).split())
+    said = "".join(c for c in words if c.isprintable())[:100]
+    return f"{where}: is damaged, or cut off ({said}). Save or copy it once more."
+
+
+def _check_size(image: Image.Image, where: str) -> None:
+    if image.width * image.height > MOST_PIXELS:
+        raise SceneError(f"{where}: {_too_large(f'{image.width} x {image.height} pixels')}")
+
+
+def _too_large(size: str) -> str:
+    return f"{size}, but at most {MOST_PIXELS:,} can be read. Make it smaller, or cut it in parts."
+
+
+def _raster(image: Image.Image, where: str) -> Raster:
+    if image.mode in SIXTEEN_BITS or (image.mode == "I" and image.format in ("PNG", "PPM")):
+        return Raster(np.asarray(image, dtype=np.float64) / 65535.0, None)
+    if image.mode in ("I", "F"):
+        raise SceneError(
+            f"{where}: its pixels are of 32 bits, of which nothing says what is white. "
+            "Save it in 8 or 16 bits."
+        )
+    if image.has_transparency_data:
+        pixels = np.asarray(image.convert("RGBA"))
+        return Raster(_mean(pixels[..., :3]), pixels[..., 3] / 255.0)
+    if image.mode in ("1", "L"):
+        return Raster(np.asarray(image.convert("L")) / 255.0, None)
+    return Raster(_mean(np.asarray(image.convert("RGB"))), None)
+
+
+def _mean(channels: NDArray[np.uint8]) -> NDArray[np.float64]:
+    return channels.sum(axis=2, dtype=np.uint16) / 765.0
