@@ -70,7 +70,6 @@ def read_mesh(path: Path, options: MapOptions) -> Drawing:
     xy = np.array([numbers.vertex(i) for i in range(vertices)]).reshape(-1, 2)
     free = [cell for i in range(cells) if (cell := numbers.cell(i, vertices)) is not None]
     numbers.end()
-    _refuse_thin_walls(path, free)
     space = _united(path, free, xy)
     room = shapely.box(*space.bounds)
     drawing = drawing_of(
@@ -113,7 +112,7 @@ class _Numbers:
         """Read a point, and over the cells around it."""
         what = f"vertex {index + self._first}"
         x, y = self._next(float, what), self._next(float, what)
-        if not max(abs(x), abs(y)) <= LARGEST:  # so written, NaN is refused too
+        if not (abs(x) <= LARGEST and abs(y) <= LARGEST):  # so written, NaN is refused too
             raise SceneError(
                 f"{self._name}, {what}: ({x}, {y}). Coordinates must be finite numbers, in metres, "
                 f"up to {LARGEST:g}."
@@ -195,17 +194,18 @@ def _refuse_thin_walls(path: Path, free: list[_Cell]) -> None:
 
 def _united(path: Path, free: list[_Cell], xy: NDArray[np.float64]) -> BaseGeometry:
     cells = np.array([Polygon(xy[list(cell.vertices)]) for cell in free], dtype=object)
-    areas = shapely.area(cells)
-    wrong = np.flatnonzero(~shapely.is_valid(cells) & (areas > 0.0))
+    wide = shapely.area(shapely.convex_hull(cells)) > 0.0  # one without area is no room
+    wrong = np.flatnonzero(~shapely.is_valid(cells) & wide)
     if wrong.size:
         raise SceneError(
             f"{path.name}, cell {free[wrong[0]].number}: its edges cross. List its vertices in "
             "order."
         )
-    kept = cells[areas > 0.0]  # one without area is no room
-    if not kept.size:
+    if not wide.any():
         raise SceneError(f"{path.name}: no cell is free. There is nowhere to go.")
-    space = shapely.union_all(kept)
+    _refuse_thin_walls(path, [cell for cell, is_wide in zip(free, wide, strict=True) if is_wide])
+    space = shapely.union_all(cells[wide])
+    areas = shapely.area(cells[wide])
     if areas.sum() > (1.0 + OVERLAP) * space.area:
         raise SceneError(
             f"{path.name}: its cells overlap, by {areas.sum() - space.area:g} of {space.area:g} "

@@ -16,6 +16,7 @@ chords: by them an outline is off by no more than a 10,000th of the page's large
 
 import io
 import math
+import re
 import warnings
 from collections import Counter
 from collections.abc import Iterator
@@ -44,7 +45,18 @@ FLATNESS = 1e-4
 """By how much a chord may be off its curve, as a share of the page's larger side."""
 
 PIXELS_PER_INCH = 96.0
-"""Of CSS: it is how a page without viewBox that is 100 mm wide has 378 units."""
+PIXELS = {
+    "": 1.0,
+    "px": 1.0,
+    "in": PIXELS_PER_INCH,
+    "cm": PIXELS_PER_INCH / 2.54,
+    "mm": PIXELS_PER_INCH / 25.4,
+    "pt": PIXELS_PER_INCH / 72.0,
+    "pc": PIXELS_PER_INCH / 6.0,
+}
+"""Of CSS: a page without viewBox that is 100 mm wide has 378 units."""
+
+_LENGTH = re.compile(rf"([0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]{{1,2}})?)({'|'.join(PIXELS)})")
 
 DARKEST_FLOOR = 1e-3
 """Share of black up to which paint is white: less than a 255th, which a screen can show."""
@@ -70,7 +82,7 @@ _JOINS: dict[str, Literal["mitre", "round", "bevel"]] = {
 class Page:
     """What is shown of the plane of a drawing, in its units, y down.
 
-    x, y : its upper left corner. width, height : above 0.
+    x, y : its upper left corner, (0, 0) if it is named. width, height : above 0.
     """
 
     x: float
@@ -98,7 +110,7 @@ def read_svg(path: Path, options: MapOptions) -> Drawing:
     """
     root = _root(path)
     page = _page(path, root)
-    shapes = _shapes(path, root, page)
+    shapes = _shapes(path, root)
     page = page or _box(path, shapes)
     room = shapely.box(0.0, 0.0, page.width, page.height)
     floor = DARKEST_FLOOR if options.threshold is None else options.threshold
@@ -149,29 +161,28 @@ def _page(path: Path, root: ElementTree.Element) -> Page | None:
             f"{path.name}: its viewBox is {' '.join(box)[:60]!r}. It is four numbers: x, y, width, "
             "height."
         ) from error
-    if not (0.0 < width <= LARGEST and 0.0 < height <= LARGEST and max(-x, x, -y, y) <= LARGEST):
+    is_near = abs(x) <= LARGEST and abs(y) <= LARGEST
+    if not (is_near and 0.0 < width <= LARGEST and 0.0 < height <= LARGEST):
         raise SceneError(f"{path.name}: its page is {width:g} by {height:g}. Give it some size.")
-    return Page(x, y, width, height)
+    # So that a unit stays one; of pages without viewBox svgelements swaps width and height.
+    root.set("viewBox", f"{x!r} {y!r} {width!r} {height!r}")
+    root.attrib |= {"width": repr(width), "height": repr(height)}
+    return Page(0.0, 0.0, width, height)
 
 
 def _pixels(path: Path, length: str) -> float:
-    try:
-        return float(svgelements.Length(length).value(ppi=PIXELS_PER_INCH))
-    except (ValueError, TypeError) as error:
-        raise SceneError(
-            f"{path.name}: {length[:40]!r} is no length. Write it like 80mm."
-        ) from error
+    found = _LENGTH.fullmatch(length)
+    if found is None:
+        raise SceneError(f"{path.name}: {length[:40]!r} is no length. Write it like 80mm.")
+    return float(found[1]) * PIXELS[found[2]]
 
 
-def _shapes(path: Path, root: ElementTree.Element, page: Page | None) -> list[Any]:
+def _shapes(path: Path, root: ElementTree.Element) -> list[Any]:
     """All that is painted, in turn, each with its own transform."""
     _put_templates_away(path, root)
-    width, height = (page.width, page.height) if page else (1000.0, 1000.0)
     text = io.BytesIO(ElementTree.tostring(root))
     try:
-        drawing = svgelements.SVG.parse(
-            text, reify=False, ppi=PIXELS_PER_INCH, width=width, height=height
-        )
+        drawing = svgelements.SVG.parse(text, reify=False, ppi=PIXELS_PER_INCH)
         elements = list(drawing.elements())
     except RecursionError as error:
         raise SceneError(f"{path.name}: an element uses itself, or lies too deep.") from error
