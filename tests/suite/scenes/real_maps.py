@@ -1,7 +1,6 @@
-"""Readers of the public maps beside the checkout: a game level as a mesh, and Moving AI's grids."""
+"""The public maps beside the checkout, and a reader of the one that is a mesh."""
 
 from functools import lru_cache
-from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -37,29 +36,6 @@ def mesh_scene(name: str) -> Scene:
     room = box(*free.bounds)
     start, goal = np.split(queries(name)[0, :4], 2)
     return make_scene(name, room, _solids(room.difference(free)), {"main": (start, goal)})
-
-
-@lru_cache(maxsize=2)
-def grid_scene(name: str) -> Scene:
-    """The blocked cells of a grid map as obstacles; cell (x, y) is the square from there on."""
-    rows = (FOLDER / name).read_text().splitlines()[4:]
-    rows = [row for row in rows if row]
-    blocks = []
-    for y, row in enumerate(rows):
-        x = 0
-        for blocked, run in groupby(row, key=lambda cell: cell not in ".GS"):
-            width = len(list(run))
-            if blocked:
-                blocks.append(box(x, y, x + width, y + 1))
-            x += width
-    room = box(0, 0, len(rows[0]), len(rows))
-    start, goal = np.split(grid_queries(name)[0, :4], 2)
-    return make_scene(name, room, _solids(shapely.union_all(blocks)), {"main": (start, goal)})
-
-
-def grid_queries(name: str) -> NDArray[np.float64]:
-    """As :func:`queries`, from cells to their centres."""
-    return queries(name) + np.array([0.5, 0.5, 0.5, 0.5, 0.0])
 
 
 def _solids(geometry: shapely.Geometry) -> list[Polygon]:
