@@ -33,7 +33,7 @@ def read_image(path: Path, options: MapOptions) -> Drawing:
             "is occupied, above 0 and up to 1."
         )
     raster = read_raster(path, path.name)
-    black = 1.0 - raster.brightness
+    black = raster.darkness
     if raster.opacity is not None:
         black *= raster.opacity
     drawing = drawing_of(black >= threshold, resolution=resolution, simplify=options.simplify)

@@ -60,15 +60,16 @@ def outlines(occupied: NDArray[np.bool_]) -> list[Polygon]:
     order = np.concatenate(rings)
     corners = xy[order]
     outer = _areas(corners, first) > 0.0
-    made = shapely.linearrings(corners, indices=np.repeat(np.arange(len(rings)), sizes))
+    numbers = np.repeat(np.arange(len(rings)), sizes)
+    made = np.asarray(shapely.linearrings(corners, indices=numbers))
     of = piece[order[first]]
     rank = np.lexsort((~outer, of))  # of each piece the outer ring, then its holes
-    return list(shapely.polygons(made[rank], indices=of[rank] - 1))
+    return list(np.asarray(shapely.polygons(made[rank], indices=of[rank] - 1)))
 
 
 def _linked_corners(
-    pieces: NDArray[np.int32],
-) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64]]:
+    pieces: NDArray[np.signedinteger],
+) -> tuple[NDArray[np.float64], NDArray[np.signedinteger], NDArray[np.int64]]:
     """Corners of outlines, row by row: where, of what piece, and the number of the one after each.
 
     A point where two cells touch is two corners, of which the first ends an edge from its left.
@@ -80,10 +81,10 @@ def _linked_corners(
     kind = np.zeros(16, dtype=np.bool_)
     kind[list(CORNERS)] = True
     places = np.flatnonzero(kind[around])
-    places = np.repeat(places, 1 + np.isin(around.flat[places], TOUCHES))
-    code = around.flat[places]
-    sw, se, nw, ne = (cell[np.divmod(places, around.shape[1])] for cell in cells)
-    y, x = np.divmod(places, around.shape[1])
+    places = np.repeat(places, 1 + np.isin(around.ravel()[places], TOUCHES))
+    y, x = np.divmod(places, len(around[0]))
+    code = around[y, x]
+    sw, se, nw, ne = (cell[y, x] for cell in cells)
 
     numbers = np.arange(len(places))
     starts_edge = numbers % 2 == 0  # each line's corners are the ends of its edges, by turns

@@ -23,12 +23,24 @@ SIXTEEN_BITS = ("I;16", "I;16B", "I;16L", "I;16N")
 class Raster:
     """An image, the upper row first.
 
-    brightness : (rows, columns) float64, the mean of red, green and blue; 0 black, 1 white.
+    level : (rows, columns) unsigned integers, the sum of red, green and blue; 0 is black.
+    white : the level of white.
     opacity : (rows, columns) float64, 0 transparent, 1 opaque; None if it says nothing of it.
     """
 
-    brightness: NDArray[np.float64]
-    opacity: NDArray[np.float64] | None
+    level: NDArray[np.unsignedinteger]
+    white: int
+    opacity: NDArray[np.float64] | None = None
+
+    @property
+    def brightness(self) -> NDArray[np.float64]:
+        """Share of white, (rows, columns)."""
+        return self.level / np.float64(self.white)
+
+    @property
+    def darkness(self) -> NDArray[np.float64]:
+        """Share of black, (rows, columns): rounded once, so that 51 of 255 are 0.2."""
+        return (self.white - self.level) / np.float64(self.white)
 
 
 def read_raster(path: Path, where: str) -> Raster:
@@ -82,7 +94,7 @@ def _too_large(size: str) -> str:
 
 def _raster(image: Image.Image, where: str) -> Raster:
     if image.mode in SIXTEEN_BITS or (image.mode == "I" and image.format in ("PNG", "PPM")):
-        return Raster(np.asarray(image, dtype=np.float64) / 65535.0, None)
+        return Raster(np.asarray(image).astype(np.uint16), 65535)
     if image.mode in ("I", "F"):
         raise SceneError(
             f"{where}: its pixels are of 32 bits, of which nothing says what is white. "
@@ -90,11 +102,11 @@ def _raster(image: Image.Image, where: str) -> Raster:
         )
     if image.has_transparency_data:
         pixels = np.asarray(image.convert("RGBA"))
-        return Raster(_mean(pixels[..., :3]), pixels[..., 3] / 255.0)
+        return Raster(_sum(pixels[..., :3]), 765, pixels[..., 3] / 255.0)
     if image.mode in ("1", "L"):
-        return Raster(np.asarray(image.convert("L")) / 255.0, None)
-    return Raster(_mean(np.asarray(image.convert("RGB"))), None)
+        return Raster(np.asarray(image.convert("L")), 255)
+    return Raster(_sum(np.asarray(image.convert("RGB"))), 765)
 
 
-def _mean(channels: NDArray[np.uint8]) -> NDArray[np.float64]:
-    return channels.sum(axis=2, dtype=np.uint16) / 765.0
+def _sum(channels: NDArray[np.uint8]) -> NDArray[np.uint16]:
+    return channels.sum(axis=2, dtype=np.uint16)

@@ -47,7 +47,7 @@ def simplified(polygon: Polygon, tolerance: float) -> Polygon:
     """
     whole = shapely.orient_polygons(polygon)
     rings = [shapely.get_coordinates(ring)[:-1] for ring in (whole.exterior, *whole.interiors)]
-    everything = shapely.STRtree(shapely.points(np.concatenate(rings)))
+    everything = shapely.STRtree(np.asarray(shapely.points(np.concatenate(rings))))
     first = np.cumsum([0, *(len(ring) for ring in rings)])
     slack = 0.1 * coordinates_of(polygon.bounds).grid
     shell, *holes = (
