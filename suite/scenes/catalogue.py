@@ -13,17 +13,24 @@ drew the walls. Scenes that were once drawn on whole metres stay as they were, a
 
 import os
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 from suite.errors import SceneError, did_you_mean
+from suite.scenes.frozen import frozen
 from suite.scenes.geojson import read_scene
 from suite.scenes.maps.formats import FORMATS, read_map
 from suite.scenes.maps.options import OPTIONS, MapOptions
-from suite.scenes.modifiers import MARK, PATHS, parse_modifiers, split_modifiers
+from suite.scenes.modifiers import MARK, PATHS, Modifiers, parse_modifiers, split_modifiers
 from suite.scenes.moving import moving, moving_name, parse_moving_name
 from suite.scenes.scattered import parse_scattered_name, scattered, scattered_name
-from suite.scenes.scene import Query, Scene, make_scene, scene_fingerprint
+from suite.scenes.scene import (
+    Query,
+    Scene,
+    make_scene,
+    renamed,
+    scene_fingerprint,
+    with_snapped_ends,
+)
 from suite.scenes.similarity import modified
 
 _FOLDER = Path(__file__).parent / "files"
@@ -191,22 +198,37 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
     if not isinstance(name_or_path, Path):
         base, text = split_modifiers(name_or_path)
         if text:
-            modifiers = parse_modifiers(text, name_or_path)
-            radius = inflate or modifiers.radius
-            if modifiers.moves:
-                return modified(_unmodified(base, modifiers.options), modifiers, inflate=radius)
-            scene = _unmodified(base, modifiers.options, radius)
-            return replace(scene, name=f"{scene.name}{MARK}{modifiers.text}")
+            return _modified(base, parse_modifiers(text, name_or_path), inflate)
     return _unmodified(name_or_path, MapOptions(), inflate)
 
 
-def _unmodified(name_or_path: str | Path, options: MapOptions, inflate: float = 0.0) -> Scene:
+def _modified(base: str, modifiers: Modifiers, inflate: float) -> Scene:
+    """A scene read, stopped, moved, grown and its ends put right, in this order."""
+    radius = inflate or modifiers.radius
+    # Of an end, at a time or moved, is said in the end whether it is free.
+    keep = modifiers.snap or modifiers.at is not None
+    grown_last = modifiers.moves or modifiers.at is not None
+    scene = _unmodified(base, modifiers.options, 0.0 if grown_last else radius, keep)
+    name = f"{scene.name}{MARK}{modifiers.text}"
+    if modifiers.at is not None:
+        scene = frozen(scene, modifiers.at, inflate=0.0 if modifiers.moves else radius)
+    if modifiers.moves:
+        scene = modified(scene, modifiers, inflate=radius)
+    return with_snapped_ends(scene, name) if modifiers.snap else renamed(scene, name)
+
+
+def _unmodified(
+    name_or_path: str | Path,
+    options: MapOptions,
+    inflate: float = 0.0,
+    keep_blocked: bool = False,
+) -> Scene:
     if _is_path(name_or_path):
         path = Path(name_or_path)
         if path.suffix.lower() in FORMATS:
             return read_map(path, options, inflate=inflate)
         _refuse(options, path.name)
-        return read_scene(path, inflate=inflate)
+        return read_scene(path, inflate=inflate, keep_blocked=keep_blocked)
     name = str(name_or_path)
     _refuse(options, name)
     if _is_generated(name):

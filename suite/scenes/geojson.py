@@ -72,7 +72,7 @@ _READ = ("optimum", "world", "gates")
 """Properties of the collection that are read, and may be null for being left out."""
 
 
-def read_scene(path: Path, *, inflate: float = 0.0) -> Scene:
+def read_scene(path: Path, *, inflate: float = 0.0, keep_blocked: bool = False) -> Scene:
     """Read a scene file.
 
     Parameters
@@ -81,6 +81,8 @@ def read_scene(path: Path, *, inflate: float = 0.0) -> Scene:
         A GeoJSON file in the format of this module.
     inflate : float
         Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`.
+    keep_blocked : bool
+        Keep queries whose ends are not free; see there.
 
     Returns
     -------
@@ -132,6 +134,7 @@ def read_scene(path: Path, *, inflate: float = 0.0) -> Scene:
         properties=properties,
         path=path,
         inflate=inflate,
+        keep_blocked=keep_blocked,
     )
 
 
