@@ -88,6 +88,9 @@ def cell_for(
     )
 
 
+_POINT = re.compile(r"\s*[-+.0-9eE]+\s*,\s*[-+.0-9eE]+\s*")
+
+
 def _refuse_moving(scene: Scene) -> None:
     refuse_moving(
         scene,
@@ -131,7 +134,7 @@ def _between(query: str | None, start: str | None, goal: str | None) -> str:
             "--start 1,2 --goal 8.5,4."
         )
     for option, text in (("--start", start), ("--goal", goal)):
-        if not re.fullmatch(r"[^,:]+,[^,:]+", text):
+        if not _POINT.fullmatch(text):
             raise KbgaBenchError(f"{option} {text}: write x,y in metres, as {option} 1.5,-2.")
     return f"{start}:{goal}".replace(" ", "")
 

@@ -64,7 +64,8 @@ def nearest_free(
     if not len(free):  # between walls that lie nearer than the grid is wide: their corners are free
         corners = shapely.get_coordinates(regions)
         free = corners[_is_free(corners, solid)]
-    place = np.array(free[np.argmin(np.hypot(*(free - point).T))])
+    # From the point itself, places beside the nearest are as far, but for rounding.
+    place = np.array(free[np.argmin(np.hypot(*(free - nearest).T))])
     place.setflags(write=False)
     return place
 

@@ -18,7 +18,7 @@ from suite.errors import SceneError
 from suite.scenes.scene import Query, Scene
 
 AT_A_TIME = 1024
-MOST_PLACES = 500_000
+MOST_PLACES = 200_000
 """Places that are drawn in vain, one after the other, before it is said that there are no more."""
 
 DECIMALS = 3
