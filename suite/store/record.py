@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,7 @@ class World:
     cold: bool = False
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Cell:
     """One run that is wanted: a query of a scene, a planner variant, a budget and a seed.
 
@@ -104,7 +105,7 @@ class Cell:
         # stay what they are.
         return data if budget.cpu_s is None else data | {"cpu_s": float(budget.cpu_s)}
 
-    @property
+    @cached_property
     def key(self) -> str:
         """Hash of everything that the outcome depends on: the row's identity in a store.
 
