@@ -193,6 +193,7 @@ def run_matrix(
     progress = Progress.at_first(cells, missing, there)
     on_progress(progress)
     store.want(matrix.name, cells)
+    store.keep_scenes({scene.name: scene for scene in matrix.scenes}, cells)
 
     def keep(record: RunRecord) -> None:
         store.add(record, replace=record.cell.key in there)
