@@ -14,6 +14,8 @@ from suite.scenes.catalogue import load_scene, main_file
 from suite.scenes.scene import Scene, scene_fingerprint
 from suite.scenes.source_files import files_digest
 from suite.store.connection import explained, open_for_reading
+from suite.store.read import read_runs
+from suite.store.record import Cell
 from suite.store.row_names import rows_in_words
 from suite.store.schema import has_table
 from suite.store.scenes import read_queries
@@ -86,6 +88,12 @@ def changed_files(store: Path, runs: pd.DataFrame) -> list[FileChange]:
             kept = int(those["digest"].notna().sum())
             found.append(FileChange(str(source), change, len(those), kept))
     return found
+
+
+def changed_file(store: Path, cell: Cell) -> FileChange | None:
+    """What became of the file of a row's scene; None if it is what it was."""
+    runs = read_runs(store)
+    return next(iter(changed_files(store, runs[runs["key"] == cell.key])), None)
 
 
 def _changed_rows(

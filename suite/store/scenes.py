@@ -152,11 +152,18 @@ def scene_at_hand(store: Path, cell: Cell) -> Iterator[Cell]:
     Yields
     ------
     Cell
-        With another source of the scene, as long as the context lasts; the same, with the same
-        source, if the store keeps no scene of it.
+        With another source of the scene, as long as the context lasts; with its own, if the store
+        keeps no scene of it.
+
+    Raises
+    ------
+    SceneError
+        If the store keeps none, and the file is gone or has changed.
     """
-    kept, row = KeptScenes(store), {name: getattr(cell, name) for name in _NAME}
+    row = {name: getattr(cell, name) for name in (*_NAME, "scene_source")}
+    kept = KeptScenes(store)
     if not kept.keeps(row):
+        kept.of(row)
         yield cell
         return
     with TemporaryDirectory(prefix="kbga-bench-") as folder:
