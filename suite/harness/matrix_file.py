@@ -8,7 +8,7 @@ A TOML file::
     description = "What it is for."
     scenes = ["zigzag", "my_scene.geojson"]  # catalogue names, or paths relative to this file
     seeds = 20                               # 0 to 19; or a list of seeds
-    plugins = ["mine.py"]                    # optional; as --plugin takes them, relative to this file
+    plugins = ["mine.py"]                    # optional; as --plugin takes them, from this folder
 
     [limits]                                 # optional; see Limits
     grace_s = 10

@@ -17,8 +17,8 @@ from suite.store.connection import explained, open_for_reading
 from suite.store.read import read_runs
 from suite.store.record import Cell
 from suite.store.row_names import rows_in_words
-from suite.store.schema import has_table
 from suite.store.scenes import read_queries
+from suite.store.schema import has_table
 
 
 class Change(StrEnum):

@@ -63,9 +63,9 @@ class KeptScenes:
         digest = self._digest(row)
         if digest is None:
             return self._of_file(row)
-        if digest not in self._scenes:
-            self._scenes[digest] = unpack_scene(self.document(row), str(self._store))
-        scene = self._scenes[digest]
+        scene = self._scenes.get(digest)
+        if scene is None:
+            scene = self._scenes[digest] = self._read(row)
         query = scene.query(row["query"])
         if scene_fingerprint(scene, query) != row["scene_hash"]:
             raise StoreError(
@@ -89,6 +89,14 @@ class KeptScenes:
             raise StoreError(f"{self._store}: the scene {row['scene']} of its rows is not in it.")
         document: bytes = found[0]
         return document
+
+    def _read(self, row: Mapping[Any, Any]) -> Scene:
+        try:
+            return unpack_scene(self.document(row), str(self._store))
+        except SceneError as error:
+            raise StoreError(
+                f"{error} Take a copy of the store, or run the matrix into a new one."
+            ) from error
 
     def _digest(self, row: Mapping[Any, Any]) -> str | None:
         return self._digests.get(tuple(row[name] for name in _NAME))
@@ -136,7 +144,9 @@ def ends_of_rows(store: Path, runs: pd.DataFrame | None = None) -> pd.DataFrame:
     rows = read_runs(store) if runs is None else runs
     found = rows[_NAME].merge(read_queries(store), on=_NAME, how="left").set_axis(rows.index)
     ends = found[_ENDS].astype(dict.fromkeys(_ENDS[:-1], "float64"))
-    return ends.assign(stratum=ends["stratum"].astype("object").where(ends["stratum"].notna(), None))
+    return ends.assign(
+        stratum=ends["stratum"].astype("object").where(ends["stratum"].notna(), None)
+    )
 
 
 @contextmanager

@@ -28,7 +28,9 @@ budget = { generations = 4 }
 planner = "visibility-graph"
 """
 
-STANDING = 'name = "standing"\nscenes = ["wall.geojson", "wall.geojson@turn=20,radius=0.3"]\nseeds = 2\n'
+STANDING = (
+    'name = "standing"\nscenes = ["wall.geojson", "wall.geojson@turn=20,radius=0.3"]\nseeds = 2\n'
+)
 MOVING = 'name = "moving"\nscenes = ["gate.geojson"]\nseeds = 1\n[[world]]\nname = "calm"\n'
 ZERO = 'settings = { charge = "zero" }\n'
 

@@ -162,7 +162,11 @@ def test_a_plugin_that_cannot_be_imported_is_no_reason_to_refuse_the_matrix(writ
         ("seeds = 3", "", "'seeds' is missing"),
         ("seeds = 3", "sedes = 3", "unknown key 'sedes'"),
         ('planner = "visibility-graph"', "", "'planner' is missing: give the name of a planner"),
-        ('"visibility-graph"', '"mine"', "its file with --plugin, or in the `plugins` of a matrix."),
+        (
+            '"visibility-graph"',
+            '"mine"',
+            "its file with --plugin, or in the `plugins` of a matrix.",
+        ),
         ("seeds = 3", 'seeds = 3\nplugins = "a.py"', "plugins is 'a.py'. Give a list of planners'"),
         ("seeds = 3", 'seeds = 3\nplugins = ["a.py"]', "plugins 1: a.py: there is no file /"),
         ("seeds = 3", 'seeds = 3\nplugins = ["a"]', "plugins 1: a: neither a .py file nor a class"),

@@ -44,7 +44,9 @@ def test_a_scene_comes_back_to_the_bit(name):
     assert [o.name for o in back.obstacles] == [o.name for o in scene.obstacles]
     for one, other in zip(scene.queries, back.queries, strict=True):
         assert (one.name, one.blocked, one.stratum) == (other.name, other.blocked, other.stratum)
-        assert one.start.tobytes() + one.goal.tobytes() == other.start.tobytes() + other.goal.tobytes()
+        assert (
+            one.start.tobytes() + one.goal.tobytes() == other.start.tobytes() + other.goal.tobytes()
+        )
     assert pickle.dumps(as_bytes(back.arrangement)) == pickle.dumps(as_bytes(scene.arrangement))
     assert digest_of(pack_scene(back)) == digest_of(pack_scene(scene))
 
