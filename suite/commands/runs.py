@@ -226,7 +226,8 @@ def rerun(
 ) -> None:
     """Repeat one row from its own record, in this process, and compare the paths.
 
-    The store is not changed. Exit code 0 if the path is the same bit for bit, or may differ because
+    It runs on the scene as the store keeps it, whatever became of the scene's file. The store is
+    not changed. Exit code 0 if the path is the same bit for bit, or may differ because
     the row's budget was of time; 1 otherwise.
 
     Example: kbga-bench rerun out/paper.db zigzag/kbga/7
@@ -235,23 +236,28 @@ def rerun(
     from suite.harness.rerun import compare
     from suite.harness.single import as_data, as_text
     from suite.store.row_names import cell_of
+    from suite.store.scene_files import changed_file
+    from suite.store.scenes import scene_at_hand
     from suite.typed import plain
 
     use_plugins(plugin)
     cell = cell_of(store, row)
-    if debug:
-        import pdb
+    with scene_at_hand(store, cell) as at_hand:
+        if debug:
+            import pdb
 
-        try:
-            record = attempt_cell(cell)
-        except Exception:
-            pdb.post_mortem(sys.exc_info()[2])
-            raise typer.Exit(1) from None
-    else:
-        record = run_cell(cell)
-    found = compare(store, record)
+            try:
+                record = attempt_cell(at_hand)
+            except Exception:
+                pdb.post_mortem(sys.exc_info()[2])
+                raise typer.Exit(1) from None
+        else:
+            record = run_cell(at_hand)
+    found, change = compare(store, record), changed_file(store, cell)
     if style is TextFormat.JSON:
-        print_json({**as_data(record), "key": cell.key, **plain(found)})
+        told = {"key": cell.key, **plain(found), "scene_file": change and change.change.value}
+        print_json({**as_data(record), **told})
     else:
-        say(f"{as_text(record)}\n  {found.words}")
+        lines = [as_text(record), found.words, *([change.as_text()] if change else [])]
+        say("\n  ".join(lines))
     raise typer.Exit(0 if found.same or not found.must_be_same else 1)

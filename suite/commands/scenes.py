@@ -165,16 +165,17 @@ def import_map(
     check_scene_file(output)
     if output.resolve() == Path(split_modifiers(source)[0]).resolve():
         raise SceneError(f"{output}: is the map itself. Name another file.")
-    said = {
-        "unknown": unknown,
-        "resolution": resolution,
-        "threshold": threshold,
-        "layer": layer,
-        "simplify": simplify,
-        "scale": scale,
-        "radius": radius,
-    }
-    scene = load_scene(with_modifiers(source, said))
+    name = with_modifiers(
+        source,
+        unknown=unknown,
+        resolution=resolution,
+        threshold=threshold,
+        layer=layer,
+        simplify=simplify,
+        scale=scale,
+        radius=radius,
+    )
+    scene = load_scene(name)
     found = summary_of(scene)
     write_scene(scene, output)
     if style is TextFormat.JSON:

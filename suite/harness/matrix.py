@@ -20,6 +20,7 @@ from suite.harness.matrix_file import (
 from suite.harness.queries import chosen_queries
 from suite.planner import Budget
 from suite.plugins.discovery import PluginInfo, planner_info
+from suite.plugins.from_file import add_plugins
 from suite.plugins.settings import make_settings
 from suite.scenes.catalogue import has_scene, load_scene
 from suite.scenes.frozen import refuse_moving
@@ -170,6 +171,9 @@ class Matrix:
 def load_matrix(name_or_path: str | Path) -> Matrix:
     """Read a matrix and check all of it: every scene loads, every planner takes its settings.
 
+    Planners of the files that it names are known to this process from then on, and to those that it
+    starts.
+
     Parameters
     ----------
     name_or_path : str or Path
@@ -189,6 +193,7 @@ def load_matrix(name_or_path: str | Path) -> Matrix:
     seeds = _seeds(source, (), file.seeds)
     named = _named_scenes(source, file, seeds)
     scenes, sources = _scenes(source, [entry.name for entry in named], path.parent)
+    _name_plugins(source, file, path.parent)
     worlds = _worlds(source, file, scenes)
     if not file.world:
         for scene, entry in zip(scenes, named, strict=True):
@@ -347,6 +352,15 @@ def _seeds(
         return tuple(range(seeds))
     _refuse_twins(source, "seeds", seeds, keys)
     return tuple(seeds)
+
+
+def _name_plugins(source: Source, file: MatrixFile, folder: Path) -> None:
+    """Make the planners of a matrix's own files known, beside those of ``--plugin``."""
+    for number, reference in enumerate(file.plugins):
+        try:
+            add_plugins([reference], folder.resolve())
+        except PluginError as error:
+            raise source.error(("plugins", number), str(error)) from error
 
 
 def _variants(source: Source, file: MatrixFile) -> tuple[Variant, ...]:

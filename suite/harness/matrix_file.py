@@ -8,6 +8,7 @@ A TOML file::
     description = "What it is for."
     scenes = ["zigzag", "my_scene.geojson"]  # catalogue names, or paths relative to this file
     seeds = 20                               # 0 to 19; or a list of seeds
+    plugins = ["mine.py"]                    # optional; as --plugin takes them, from this folder
 
     [limits]                                 # optional; see Limits
     grace_s = 10
@@ -176,6 +177,10 @@ class MatrixFile(_Table, frozen=True):
     world: _Worlds = []
     name: _Name | None = None
     description: str = ""
+    plugins: Annotated[
+        list[_Name],
+        Meta(description='a list of planners\' files: "FILE.py", "FILE.py:CLASS", "MODULE:CLASS"'),
+    ] = []
     limits: dict[str, Any] = {}
 
 

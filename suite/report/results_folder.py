@@ -35,7 +35,6 @@ from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import fair
 from suite.report.table import Table
 from suite.report.tables.alignment import without_repeats
-from suite.scenes.catalogue import scene_as_it_was
 from suite.scenes.scene import Query, Scene
 from suite.simulation.record import from_data
 from suite.store.read import (
@@ -47,6 +46,7 @@ from suite.store.read import (
     read_simulation,
     read_snapshots,
 )
+from suite.store.scenes import KeptScenes
 
 MANIFEST = "manifest.json"
 
@@ -84,7 +84,8 @@ def write_results(
     Raises
     ------
     KbgaBenchError
-        If the store holds no runs, a scene has changed since, or a file can't be written.
+        If the store holds no runs, neither keeps a scene of them nor finds it in its file, or a
+        file can't be written.
     """
     need_pyarrow()
     runs = read_runs(store)
@@ -92,14 +93,15 @@ def write_results(
         raise StoreError(f"{store}: it holds no runs yet. `kbga-bench run` fills it.")
     current = newest(runs)
     check_optima(current)
-    scenes = _scenes(current)
+    kept = KeptScenes(store)
+    scenes = _scenes(current, kept)
     folder = made_folder(directory)
     tables = read_tables(store)
     files = write_tables([t for t in tables if not t.detail], folder, TableFormat.MARKDOWN)
     files += write_tables(tables, folder, TableFormat.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
     shown = fair(without_repeats(current))
-    for name, figure in _figures(store, shown, scenes, leave_out):
+    for name, figure in _figures(store, shown, kept, scenes, leave_out):
         file = folder / f"{name}{figures.suffix}"
         save(figure, file)
         files.append(file)
@@ -128,15 +130,16 @@ def write_tables(tables: Sequence[Table], directory: Path, style: TableFormat) -
     return files
 
 
-def _scenes(runs: pd.DataFrame) -> list[tuple[Scene, Query]]:
+def _scenes(runs: pd.DataFrame, kept: KeptScenes) -> list[tuple[Scene, Query]]:
     """Scenes and queries of the runs, as they were when these were made."""
-    wanted = runs[["scene_source", "query", "scene_hash"]].drop_duplicates()
-    return [scene_as_it_was(*names) for names in wanted.itertuples(index=False)]
+    wanted = runs.drop_duplicates(["scene", "query", "scene_hash"])
+    return [kept.of(row) for row in wanted.to_dict("records")]
 
 
 def _figures(
     store: Path,
     current: pd.DataFrame,
+    kept: KeptScenes,
     scenes: list[tuple[Scene, Query]],
     leave_out: Collection[Part],
 ) -> Iterator[tuple[str, Figure]]:
@@ -151,7 +154,7 @@ def _figures(
     yield from _scene_figures(planned, paths, scenes)
     if not driven.empty:
         yield REPLANNING, plot_replanning(driven, read_replans(store))
-        yield from _snapshot_sheets(driven, store)
+        yield from _snapshot_sheets(driven, store, kept)
 
 
 def _comparisons(steps: Steps) -> Iterator[tuple[str, Figure]]:
@@ -177,10 +180,12 @@ def _scene_figures(
         yield name, plot_scene_results(scene, query, best, labels=labels)
 
 
-def _snapshot_sheets(runs: pd.DataFrame, store: Path) -> Iterator[tuple[str, Figure]]:
+def _snapshot_sheets(
+    runs: pd.DataFrame, store: Path, kept: KeptScenes
+) -> Iterator[tuple[str, Figure]]:
     """A sheet of the first run of the first planner in each world."""
     for row in runs.drop_duplicates(["scene_source", "world"]).to_dict("records"):
-        scene, _ = scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])
+        scene, _ = kept.of(row)
         data = read_simulation(store, row["key"])
         figure = plot_snapshots(from_data(scene, data))
         heading(figure, f"{data['scene']}, {row['world']}: {row['variant']}")

@@ -18,6 +18,7 @@ from pathlib import Path
 from suite.errors import SceneError, did_you_mean
 from suite.scenes.frozen import frozen
 from suite.scenes.geojson import read_scene, stated_radius
+from suite.scenes.kept import SUFFIX, read_kept
 from suite.scenes.maps.features import knows_no_roles
 from suite.scenes.maps.formats import FORMATS, WITHOUT_ROLES, read_map, understood
 from suite.scenes.maps.options import OPTIONS, MapOptions
@@ -174,6 +175,27 @@ def scene_file(name: str) -> Path:
     return _FOLDER / f"{name}.geojson"
 
 
+def main_file(source: str) -> Path | None:
+    """The file that a scene is named by; None if it is drawn from a seed, or nothing is known.
+
+    Parameters
+    ----------
+    source : str
+        As :func:`load_scene` takes it.
+
+    Examples
+    --------
+    >>> main_file("maze@turn=3").name, main_file("scattered_50-7")
+    ('maze.geojson', None)
+    >>> main_file("maps/berlin.map@radius=0.2").as_posix()
+    'maps/berlin.map'
+    """
+    base, _ = split_modifiers(source)
+    if _is_path(base):
+        return Path(base)
+    return scene_file(base) if base in _FILES else None
+
+
 def load_scene(name_or_path: str | Path, *, inflate: float | None = None) -> Scene:
     """Load a scene of the catalogue, or one of your own.
 
@@ -248,6 +270,8 @@ def _unmodified(
         if path.suffix and path.suffix.lower() not in SUFFIXES and not _looks_like_json(path):
             raise SceneError(f"{path}: {_no_format(path)}")
         _refuse(options, path.name)
+        if path.suffix == SUFFIX:
+            return _inflated(read_kept(path), inflate or 0.0)
         return read_scene(path, inflate=inflate, keep_blocked=keep_blocked)
     name = str(name_or_path)
     _refuse(options, name)
@@ -278,7 +302,9 @@ def _refuse(options: MapOptions, where: str) -> None:
 def scene_as_it_was(
     source: str, query: str, fingerprint: str, load: Callable[[str], Scene] = load_scene
 ) -> tuple[Scene, Query]:
-    """The scene and the query of a row, unless they have changed since it was made.
+    """The scene and the query of a run, unless they have changed since it was wanted.
+
+    A store keeps the scenes of its rows, and reads them by :mod:`suite.store.scenes`.
 
     Parameters
     ----------
@@ -300,8 +326,8 @@ def scene_as_it_was(
     asked = scene.query(query)
     if scene_fingerprint(scene, asked) != fingerprint:
         raise SceneError(
-            f"{source}: the scene has changed since its rows were made, or wanted. Run them again "
-            "into a new store, or put the scene back."
+            f"{source}: the scene has changed since its rows were made, or wanted. Give `run` "
+            "again: it runs them on the scene as it is now. Or put the scene back."
         )
     return scene, asked
 

@@ -363,6 +363,19 @@ def write_scene(scene: Scene, path: Path) -> None:
     SceneError
         If the file can't be written.
     """
+    with writing(path, SceneError):
+        path.write_text(as_geojson(scene), encoding="utf-8")
+
+
+def as_geojson(scene: Scene, members: Mapping[str, Any] | None = None) -> str:
+    """A scene as the text of a file, one feature a line, with every coordinate to the last bit.
+
+    Parameters
+    ----------
+    scene : Scene
+    members : mapping, optional
+        Further ones of the collection.
+    """
     features = [_as_feature({"role": "workspace"}, mapping(scene.workspace))]
     features += [
         _as_feature(
@@ -380,10 +393,10 @@ def write_scene(scene: Scene, path: Path) -> None:
     # As it is: whoever reads it is not to grow it again.
     properties = dict(scene.properties) | ({"grown_by": scene.radius} if scene.radius else {})
     crs = {"crs": properties.pop("crs")} if "crs" in properties else {}
-    head = json.dumps({"name": scene.name, **crs, "properties": properties}, indent=1)
-    text = f'{head[:-2]},\n "type": "FeatureCollection",\n "features": [\n{lines}\n]}}\n'
-    with writing(path, SceneError):
-        path.write_text(text, encoding="utf-8")
+    head = json.dumps(
+        {"name": scene.name, **crs, "properties": properties, **(members or {})}, indent=1
+    )
+    return f'{head[:-2]},\n "type": "FeatureCollection",\n "features": [\n{lines}\n]}}\n'
 
 
 def _as_feature(properties: Mapping[str, Any], geometry: Mapping[str, Any]) -> dict[str, Any]:

@@ -110,25 +110,34 @@ def split_modifiers(name: str) -> tuple[str, str]:
     return base, text
 
 
-def with_modifiers(name: str, values: Mapping[str, object]) -> str:
-    """A name with more modifiers behind it; those of no value are left out.
+def with_modifiers(name: str, **values: object) -> str:
+    """The name of a scene with more modifiers behind it; those of no value are left out.
+
+    Parameters
+    ----------
+    name : str
+        Of a scene, or a file, modified or not.
+    values
+        By the name of a modifier: a number, a text, True for ``yes``; None and False leave it out.
 
     Examples
     --------
-    >>> with_modifiers("zigzag", {"radius": 0.2}), with_modifiers("zigzag@turn=17", {"scale": 2})
-    ('zigzag@radius=0.2', 'zigzag@turn=17,scale=2')
-    >>> with_modifiers("zigzag", {"radius": None})
-    'zigzag'
+    >>> with_modifiers("maze", radius=0.5), with_modifiers("maze@turn=3", radius=1.0, snap=True)
+    ('maze@radius=0.5', 'maze@turn=3,radius=1,snap=yes')
+    >>> with_modifiers("maze", radius=None, snap=False)
+    'maze'
     """
-    said = {key: _briefly(value) for key, value in values.items() if value is not None}
+    said = {k: _briefly(v) for k, v in values.items() if v is not None and v is not False}
     text = ",".join(f"{key}={value}" for key, value in said.items())
     mark = "," if split_modifiers(name)[1] else MARK
     return f"{name}{mark}{text}" if text else name
 
 
 def _briefly(value: object) -> str:
-    """A value as people write it: options are parsed to floats, and 1.0 is written 1."""
-    return str(int(value)) if isinstance(value, float) and value.is_integer() else str(value)
+    if value is True:
+        return "yes"
+    # Options are parsed to floats, and 1.0 is written 1.
+    return np.format_float_positional(value, trim="-") if isinstance(value, float) else str(value)
 
 
 def parse_modifiers(text: str, where: str) -> Modifiers:
@@ -174,42 +183,6 @@ def parse_modifiers(text: str, where: str) -> Modifiers:
         "snap" in pairs and _yes(pairs["snap"], "snap", where),
         _options({key: value for key, value in pairs.items() if key in OPTIONS}, where),
     )
-
-
-def with_modifiers(
-    name: str, *, radius: float | None = None, at: float | None = None, snap: bool = False
-) -> str:
-    """The name of a scene with more modifiers behind it.
-
-    Parameters
-    ----------
-    name : str
-        Of a scene, or a file, modified or not.
-    radius : float, optional
-        Of the robot, metres; 0 is none.
-    at : float, optional
-        Seconds, at which a dynamic scene is to stand still.
-    snap : bool
-        Whether ends that are not free are moved.
-
-    Examples
-    --------
-    >>> with_modifiers("maze", radius=0.5), with_modifiers("maze@turn=3", radius=1.0, snap=True)
-    ('maze@radius=0.5', 'maze@turn=3,radius=1,snap=yes')
-    >>> with_modifiers("maze", radius=0.0)
-    'maze'
-    """
-    more = [f"at={_shortest(at)}"] if at is not None else []
-    more += [f"radius={_shortest(radius)}"] if radius else []
-    more += ["snap=yes"] if snap else []
-    if not more:
-        return name
-    _, modifiers = split_modifiers(name)
-    return f"{name}{',' if modifiers else MARK}{','.join(more)}"
-
-
-def _shortest(number: float) -> str:
-    return np.format_float_positional(number, trim="-")
 
 
 def _pairs(text: str, where: str) -> Mapping[str, str]:

@@ -9,7 +9,9 @@ import pandas as pd
 from suite.planner import PlanStatus
 from suite.store.read import read_conflicts, read_runs, read_sessions, read_wanted, stored_cell
 from suite.store.row_names import DIGITS
+from suite.store.scene_files import FileChange, changed_files
 from suite.store.write import is_being_written
+from suite.typed import plain
 
 MOST_FAILURES = 5
 """Failed rows that are named to people."""
@@ -26,7 +28,9 @@ def status(store: Path) -> dict[str, Any]:
         ``planners``, in the order of the matrix, count wanted runs. ``failures`` are the wanted
         rows that ended in one of PlanStatus.FAILURES (all of them, if no matrix wants any): key,
         name, status and reason. ``contended`` counts the rows, of these, whose runs had no core for
-        themselves. ``writer`` says who has it open for writing, or is null.
+        themselves. ``scene_files`` are the scenes of rows whose files are gone or hold another
+        scene now: source, change, rows, and how many of these the store keeps the scene of.
+        ``writer`` says who has it open for writing, or is null.
 
     Raises
     ------
@@ -56,6 +60,7 @@ def status(store: Path) -> dict[str, Any]:
             for variant, group in wanted.groupby("variant", sort=False)
         },
         "failures": _failures(runs, wanted),
+        "scene_files": [plain(change) for change in changed_files(store, runs)],
         "last_row_at": runs["started_at"].max() if len(runs) else None,
         "writer": _writer(sessions[-1] if sessions else {}) if is_being_written(store) else None,
     }
@@ -84,6 +89,7 @@ def as_text(found: dict[str, Any]) -> str:
         good = f"{tally['succeeded']} succeeded"
         lines.append(f"  {name}: {tally['done']} of {tally['wanted']}, {good}{failed}")
     lines += _failures_as_text(found["failures"])
+    lines += [f"  {FileChange(**change).as_text()}" for change in found["scene_files"]]
     if found["contended"]:
         lines.append(
             f"  {found['contended']} rows had no core for themselves; the same `kbga-bench run` "

@@ -25,6 +25,7 @@ from suite.store.read import (
     read_snapshots,
     read_wanted,
 )
+from suite.store.scenes import KeptScenes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,6 +43,7 @@ class Evidence:
     wanted : what the matrices want.
     conflicts : number of rows of other stores that say something else.
     sessions : provenance.
+    scenes : that the rows ran on.
     """
 
     store: Path
@@ -55,6 +57,7 @@ class Evidence:
     wanted: pd.DataFrame
     conflicts: int
     sessions: list[dict[str, Any]]
+    scenes: KeptScenes
 
     @property
     def driven(self) -> pd.DataFrame:
@@ -93,4 +96,5 @@ def read_evidence(store: Path, reference: str | None = None) -> Evidence:
         wanted=read_wanted(store),
         conflicts=len(read_conflicts(store)),
         sessions=read_sessions(store),
+        scenes=KeptScenes(store),
     )

@@ -12,7 +12,6 @@ from suite.report.html.appearance import PLANNERS_AT_MOST, Appearance, appearanc
 from suite.report.html.drawing import Drawing, draw
 from suite.report.html.evidence import Evidence
 from suite.report.rows import cheapest, feasible
-from suite.scenes.catalogue import scene_as_it_was
 
 SCENES_AT_MOST = 40
 """A page of more is not looked at."""
@@ -94,7 +93,7 @@ def scene_pictures(evidence: Evidence) -> tuple[list[ScenePicture], int]:
 
 def _picture(number: int, name: str, runs: pd.DataFrame, evidence: Evidence) -> ScenePicture:
     optimum = runs["optimum"].max()
-    drawing, reason = _drawing(runs.iloc[0])
+    drawing, reason = _drawing(runs.iloc[0], evidence)
     return ScenePicture(
         number,
         name,
@@ -105,9 +104,9 @@ def _picture(number: int, name: str, runs: pd.DataFrame, evidence: Evidence) -> 
     )
 
 
-def _drawing(row: "pd.Series[Any]") -> tuple[Drawing | None, str]:
+def _drawing(row: "pd.Series[Any]", evidence: Evidence) -> tuple[Drawing | None, str]:
     try:
-        return draw(*scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])), ""
+        return draw(*evidence.scenes.of(row.to_dict())), ""
     except KbgaBenchError as error:
         return None, f"It can't be drawn: {error}"
 
