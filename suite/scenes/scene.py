@@ -26,6 +26,7 @@ from suite.geometry.coordinates import Coordinates, coordinates_of, printed
 from suite.geometry.coverage import left_open
 from suite.geometry.growth import grown, shrunk
 from suite.geometry.kernels import PARTS, ObstacleArrays
+from suite.geometry.mesh import Mesh, mesh_of
 from suite.geometry.tolerances import LARGEST
 from suite.scenes.dynamics import Dynamics, as_text
 from suite.scenes.polygons import as_polygon, check_polygon, check_width
@@ -95,8 +96,8 @@ class Scene:
     path: Path | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        """All but the arrangement: its arrays would come back writable, another type to numba."""
-        state = {k: v for k, v in self.__dict__.items() if k != "arrangement"}
+        """All but what is computed: its arrays would come back writable, another type to numba."""
+        state = {k: v for k, v in self.__dict__.items() if k not in ("arrangement", "mesh")}
         return state | {"properties": dict(self.properties)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -114,6 +115,11 @@ class Scene:
     def arrangement(self) -> Arrangement:
         """The plane divided into free space, obstacle groups and the frame."""
         return arrange(self.workspace, [p for o in self.obstacles for p in self.closed_by(o)])
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """Free space as triangles, for the exact solver."""
+        return mesh_of(self.arrangement.free, self.coordinates)
 
     def closed_by(self, obstacle: Obstacle) -> list[Polygon]:
         """What an obstacle closes of the workspace; one that moves is cut at the border."""
