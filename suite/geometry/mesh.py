@@ -22,26 +22,29 @@ class Mesh(NamedTuple):
     """Triangles of free space; V vertices, T triangles, and the rows of ``boxes`` are triangles.
 
     vertices : (V, 2) float64, metres.
-    origin : (3 T,) int64, the vertex in which a half-edge begins.
-    twin : (3 T,) int64, the half-edge on the other side; -1 where that is closed.
-    bends : (3 T,) bool, whether solid is convex in a half-edge's origin, as seen from its triangle:
-        only there, and only around it, a shortest path bends.
-    first, last : (V,) int64, of a vertex in which solid is convex: the half-edge that leaves it
-        along solid on its right, and the one that leaves it in the last triangle before the solid
-        on its left. -1 elsewhere.
-    outward : (T,) int64, the half-edge by which one leaves a triangle for the rest of the mesh, if
-        it lies in a pocket that has no other way out; else -1.
+    half_edges : (3 T, 3) int64: ORIGIN, the vertex in which it begins; WAY, its twin, or -1 where
+        that is closed, or -2 - twin where the twin leads into a pocket; BENDS, whether solid is
+        convex in its origin, as seen from its triangle: only there, and only around it, a shortest
+        path bends.
+    fans : (V, 2) int64, of a vertex in which solid is convex: FIRST, the half-edge that leaves it
+        along solid on its right, and LAST, the one that leaves it in the last triangle before the
+        solid on its left. -1 elsewhere.
+    outward : (T,) int64, the half-edge by which one leaves a triangle that lies in a pocket, which
+        has no other way out for the rest of the mesh; -1 elsewhere.
     boxes : (T, 4) float64, xmin, ymin, xmax, ymax.
+    most : int, the largest number of triangles around a vertex.
     """
 
     vertices: np.ndarray
-    origin: np.ndarray
-    twin: np.ndarray
-    bends: np.ndarray
-    first: np.ndarray
-    last: np.ndarray
+    half_edges: np.ndarray
+    fans: np.ndarray
     outward: np.ndarray
     boxes: np.ndarray
+    most: int
+
+
+ORIGIN, WAY, BENDS = range(3)
+FIRST, LAST = range(2)
 
 
 class NoMesh(Exception):  # noqa: N818 (not an error of the program)
@@ -73,23 +76,19 @@ def mesh_of(free: Sequence[Polygon], coordinates: Coordinates) -> Mesh:
     corners = shapely.get_coordinates(cut).reshape(-1, 4, 2)[:, 2::-1].reshape(-1, 2)
     places, origin = np.unique(_as_complex(corners), return_inverse=True)
     vertices = coordinates.world(np.stack([places.real, places.imag], axis=1))
-    origin = origin.astype(np.int64)
     twin = _twins(origin, len(vertices))
     _check_sides(local, places, origin, twin)
-    count = len(vertices)
     mesh = Mesh(
         vertices=vertices,
-        origin=origin,
-        twin=twin,
-        bends=np.zeros(len(origin), dtype=np.bool_),
-        first=np.full(count, -1, dtype=np.int64),
-        last=np.full(count, -1, dtype=np.int64),
+        half_edges=np.stack([origin, twin, np.zeros_like(twin)], axis=1).astype(np.int64),
+        fans=np.full((len(vertices), 2), -1, dtype=np.int64),
         outward=np.full(len(origin) // 3, -1, dtype=np.int64),
         boxes=_boxes(vertices[origin].reshape(-1, 3, 2)),
+        most=int(np.bincount(origin).max(initial=0)),
     )
-    if not _mark(mesh):
+    if not _mark(mesh.vertices, mesh.half_edges, mesh.fans, mesh.outward):
         raise NoMesh("a triangle has no area")
-    for table in mesh:
+    for table in mesh[:-1]:
         table.setflags(write=False)
     return mesh
 
@@ -158,50 +157,55 @@ def side_of(xy: np.ndarray, a: int, b: int, c: int) -> int:
 
 
 @kernel
-def _mark(mesh: Mesh) -> bool:
+def _mark(
+    vertices: np.ndarray, half_edges: np.ndarray, fans: np.ndarray, outward: np.ndarray
+) -> bool:
     """Fill in where paths bend, and what is a pocket; False if a triangle has no area."""
-    origin, twin = mesh.origin, mesh.twin
-    for t in range(origin.shape[0] // 3):
-        if side_of(mesh.vertices, origin[3 * t], origin[3 * t + 1], origin[3 * t + 2]) <= 0:
+    for h in range(0, half_edges.shape[0], 3):
+        a, b, c = half_edges[h, ORIGIN], half_edges[h + 1, ORIGIN], half_edges[h + 2, ORIGIN]
+        if side_of(vertices, a, b, c) <= 0:
             return False
-    for h in range(origin.shape[0]):
-        if twin[h] < 0:
-            _mark_bend(mesh, h)
-    for t in range(mesh.outward.shape[0]):
-        _mark_pocket(mesh, t)
+    for h in range(half_edges.shape[0]):
+        if half_edges[h, WAY] < 0:
+            _mark_bend(vertices, half_edges, fans, h)
+    for t in range(outward.shape[0]):
+        _mark_pocket(half_edges, outward, t)
+    for t in range(outward.shape[0]):
+        if outward[t] >= 0:
+            half_edges[half_edges[outward[t], WAY], WAY] = -2 - outward[t]
     return True
 
 
 @kernel
-def _mark_bend(mesh: Mesh, first: int) -> None:
+def _mark_bend(vertices: np.ndarray, half_edges: np.ndarray, fans: np.ndarray, first: int) -> None:
     """Mark the corner in which a half-edge along solid begins, if solid is convex there."""
     last = first
-    while mesh.twin[preceding(last)] >= 0:
-        last = mesh.twin[preceding(last)]
-    v = mesh.origin[first]
-    before, after = mesh.origin[preceding(last)], mesh.origin[following(first)]
-    if side_of(mesh.vertices, before, v, after) >= 0:
+    while half_edges[preceding(last), WAY] >= 0:
+        last = half_edges[preceding(last), WAY]
+    v = half_edges[first, ORIGIN]
+    before, after = half_edges[preceding(last), ORIGIN], half_edges[following(first), ORIGIN]
+    if side_of(vertices, before, v, after) >= 0:
         return
-    mesh.first[v] = first
-    mesh.last[v] = last
+    fans[v, FIRST] = first
+    fans[v, LAST] = last
     h = first
     while h >= 0:
-        mesh.bends[h] = True
-        h = mesh.twin[preceding(h)]
+        half_edges[h, BENDS] = 1
+        h = half_edges[preceding(h), WAY]
 
 
 @kernel
-def _mark_pocket(mesh: Mesh, t: int) -> None:
+def _mark_pocket(half_edges: np.ndarray, outward: np.ndarray, t: int) -> None:
     """Mark a triangle with a single way out, and those that have but one because of it."""
-    while mesh.outward[t] < 0:
-        way = -1
+    while outward[t] < 0:
+        out = -1
         for h in range(3 * t, 3 * t + 3):
-            other = mesh.twin[h]
-            if other >= 0 and mesh.outward[other // 3] != other:
-                if way >= 0:
+            other = half_edges[h, WAY]
+            if other >= 0 and outward[other // 3] != other:
+                if out >= 0:
                     return
-                way = h
-        if way < 0:
+                out = h
+        if out < 0:
             return
-        mesh.outward[t] = way
-        t = mesh.twin[way] // 3
+        outward[t] = out
+        t = half_edges[out, WAY] // 3

@@ -6,17 +6,15 @@ bound it and not by the places where it cuts that side, so that what it sees is 
 signs of input coordinates alone; only lengths are rounded. Metres.
 """
 
-import heapq
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from suite.geometry.mesh import Mesh, following, preceding, side_of
+from suite.geometry.mesh import BENDS, FIRST, LAST, ORIGIN, WAY, Mesh, following, preceding, side_of
 from suite.geometry.predicates import orientation
-from suite.jit import allocating_kernel, kernel
+from suite.jit import allocating_kernel, inlined_kernel, kernel
 from suite.scenes.scene import Query, Scene
 
 
@@ -102,341 +100,451 @@ def path_length(path: NDArray[np.float64]) -> float:
 ROUNDING = 8.0 * 2.0**-53
 """Bounds the rounding of the numbers below, relative to the magnitude of what is subtracted."""
 
-Cone = tuple[float, int, int, int, int, int, int]
-"""What is seen from a node through a side of a triangle: the least length of a path through it; the
-half-edge by which it enters a triangle; the node; and two nodes on each of the rays on its left and
-right, which are the node and a corner or, where a path goes straight on past its last bend, the
-node before and the node. A corner that is to be left has -1 for a half-edge."""
+# Columns of nodes: the vertices of the mesh, then the start, then the goal. COST is the length of
+# the shortest path known to a node, PARENT the node before it on that path, CLOSED whether there
+# can be no shorter one.
+X, Y, COST, PARENT, CLOSED = range(5)
 
+# Columns of the queue, a binary heap of cones. LEAST is the least length of a path through a cone,
+# ENTRY the half-edge by which it enters a triangle, ROOT the node that it is seen from, LEFT and
+# RIGHT the corners on the rays that bound it; where a path goes straight on past the root, that ray
+# is the root's own, from its parent on. A row with NOWHERE to enter is a node that is to be left.
+LEAST, ENTRY, ROOT, LEFT, RIGHT = range(5)
+NOWHERE = -1
 
-class Search(NamedTuple):
-    """What a search knows of the nodes: the vertices of the mesh, then start and goal.
+HAS_GOAL, LEADS_ON = 1, 2
+"""Marks of triangles: the goal lies there; it lies in a pocket, and this is the way to it."""
 
-    xy : (n, 2) float64, metres.
-    cost : (n,) float64, length of the shortest path known to a node, metres.
-    parent : (n,) int64, the node before it on that path, -1 for the start.
-    closed : (n,) bool, whether its shortest path is known.
-    has_goal : (T,) bool, whether the goal lies in a triangle or on its border.
-    leads_on : (T,) bool, whether the goal lies in a pocket and a triangle on the way to it.
-    """
-
-    xy: np.ndarray
-    cost: np.ndarray
-    parent: np.ndarray
-    closed: np.ndarray
-    has_goal: np.ndarray
-    leads_on: np.ndarray
+IN_A_ROW = 64
+"""Triangles that a cone is pushed through at a time."""
 
 
 @allocating_kernel
 def _search(sx: float, sy: float, gx: float, gy: float, mesh: Mesh) -> tuple[np.ndarray, int]:
     """Nodes of the shortest path, and the number of triangles looked into; empty if none."""
-    n, triangles = mesh.vertices.shape[0], mesh.outward.shape[0]
+    half_edges, fans = mesh.half_edges, mesh.fans
+    n = mesh.vertices.shape[0]
     start, goal = n, n + 1
-    xy = np.empty((n + 2, 2))
-    xy[:n] = mesh.vertices
-    xy[start, 0], xy[start, 1] = sx, sy
-    xy[goal, 0], xy[goal, 1] = gx, gy
-    search = Search(
-        xy,
-        np.full(n + 2, np.inf),
-        np.full(n + 2, -1, dtype=np.int64),
-        np.zeros(n + 2, dtype=np.bool_),
-        np.zeros(triangles, dtype=np.bool_),
-        np.zeros(triangles, dtype=np.bool_),
-    )
-    queue = [(0.0, -1, start, start, start, start, start)]
-    _mark_goal(mesh, search)
-    search.cost[start] = 0.0
-    checks = 0
-    while len(queue) > 0:
-        cone = heapq.heappop(queue)
-        node = cone[2]
-        if cone[1] >= 0:
-            checks += _follow(mesh, search, queue, cone)
-        elif not search.closed[node]:
-            search.closed[node] = True
-            if node == goal:
-                return _trace_back(search.parent, goal), checks
-            if node == start:
-                checks += _leave_start(mesh, search, queue)
-            else:
-                checks += _turn(mesh, search, queue, cone[0], node)
+    nodes = np.empty((n + 2, 5))
+    for i in range(n):
+        _set_node(nodes, i, mesh.vertices[i, 0], mesh.vertices[i, 1])
+    _set_node(nodes, start, sx, sy)
+    _set_node(nodes, goal, gx, gy)
+    nodes[start, COST] = 0.0
+    marks = np.zeros(mesh.outward.shape[0], dtype=np.uint8)
+    _mark_goal(mesh.boxes, half_edges, mesh.outward, nodes, marks)
+    # What is left at a time adds no more than three rows for each triangle.
+    most = 3 * (mesh.most + IN_A_ROW)
+    queue = np.empty((4 * most, 5))
+    checks, size = _leave_start(mesh.boxes, half_edges, fans, nodes, marks, queue)
+    while size > 0:
+        if size + most > queue.shape[0]:
+            queue = _larger(queue, size)
+        node = int(queue[0, ROOT])
+        if queue[0, ENTRY] != NOWHERE:
+            seen, size = _follow(half_edges, fans, nodes, marks, queue, size)
+            checks += seen
+            continue
+        bound = queue[0, LEAST]
+        size = _pop(queue, size)
+        if nodes[node, CLOSED] != 0.0:
+            continue
+        nodes[node, CLOSED] = 1.0
+        if node == goal:
+            return _trace_back(nodes), checks
+        seen, size = _turn(half_edges, fans, nodes, marks, queue, size, bound, node)
+        checks += seen
     return np.empty(0, dtype=np.int64), checks
 
 
+@inlined_kernel
+def _set_node(nodes: np.ndarray, i: int, x: float, y: float) -> None:
+    nodes[i, X], nodes[i, Y] = x, y
+    nodes[i, COST], nodes[i, PARENT], nodes[i, CLOSED] = np.inf, -1.0, 0.0
+
+
 @allocating_kernel
-def _trace_back(parent: np.ndarray, goal: int) -> np.ndarray:
+def _larger(queue: np.ndarray, size: int) -> np.ndarray:
+    larger = np.empty((2 * queue.shape[0], queue.shape[1]))
+    for row in range(size):
+        for column in range(queue.shape[1]):
+            larger[row, column] = queue[row, column]
+    return larger
+
+
+@allocating_kernel
+def _trace_back(nodes: np.ndarray) -> np.ndarray:
     count = 0
-    node = goal
+    node = nodes.shape[0] - 1
     while node >= 0:
-        node = parent[node]
+        node = int(nodes[node, PARENT])
         count += 1
     order = np.empty(count, dtype=np.int64)
-    node = goal
+    node = nodes.shape[0] - 1
     for i in range(count - 1, -1, -1):
         order[i] = node
-        node = parent[node]
+        node = int(nodes[node, PARENT])
     return order
 
 
+@inlined_kernel
+def _copy(queue: np.ndarray, row: int, to: int) -> None:
+    for column in range(queue.shape[1]):
+        queue[to, column] = queue[row, column]
+
+
 @kernel
-def _holds(mesh: Mesh, t: int, x: float, y: float) -> bool:
-    """Whether a place lies in a triangle or on its border."""
-    boxes = mesh.boxes
-    if x < boxes[t, 0] or y < boxes[t, 1] or x > boxes[t, 2] or y > boxes[t, 3]:
-        return False
-    a, b, c = mesh.origin[3 * t], mesh.origin[3 * t + 1], mesh.origin[3 * t + 2]
-    xy = mesh.vertices
+def _put(
+    queue: np.ndarray,
+    at: int,
+    size: int,
+    least: float,
+    entry: int,
+    root: int,
+    left: int,
+    right: int,
+) -> None:
+    """Put a row into a heap where row ``at`` is free, and sift it to its place."""
+    while at > 0 and queue[(at - 1) >> 1, LEAST] > least:
+        _copy(queue, (at - 1) >> 1, at)
+        at = (at - 1) >> 1
+    child = 2 * at + 1
+    while child < size:
+        if child + 1 < size and queue[child + 1, LEAST] < queue[child, LEAST]:
+            child += 1
+        if queue[child, LEAST] >= least:
+            break
+        _copy(queue, child, at)
+        at = child
+        child = 2 * at + 1
+    queue[at, LEAST] = least
+    queue[at, ENTRY], queue[at, ROOT] = entry, root
+    queue[at, LEFT], queue[at, RIGHT] = left, right
+
+
+@kernel
+def _push(
+    queue: np.ndarray, size: int, least: float, entry: int, root: int, left: int, right: int
+) -> int:
+    """Add a row to a heap; return the new number of rows."""
+    _put(queue, size, size, least, entry, root, left, right)
+    return size + 1
+
+
+@kernel
+def _pop(queue: np.ndarray, size: int) -> int:
+    """Take the first row from a heap; return the new number of rows."""
+    size -= 1
+    if size > 0:
+        least, entry, root = queue[size, LEAST], int(queue[size, ENTRY]), int(queue[size, ROOT])
+        left, right = int(queue[size, LEFT]), int(queue[size, RIGHT])
+        _put(queue, 0, size, least, entry, root, left, right)
+    return size
+
+
+@kernel
+def _holds(half_edges: np.ndarray, nodes: np.ndarray, t: int, node: int) -> bool:
+    """Whether a node lies in a triangle or on its border."""
+    a, b, c = (
+        half_edges[3 * t, ORIGIN],
+        half_edges[3 * t + 1, ORIGIN],
+        half_edges[3 * t + 2, ORIGIN],
+    )
     return (
-        orientation(xy[a, 0], xy[a, 1], xy[b, 0], xy[b, 1], x, y) >= 0
-        and orientation(xy[b, 0], xy[b, 1], xy[c, 0], xy[c, 1], x, y) >= 0
-        and orientation(xy[c, 0], xy[c, 1], xy[a, 0], xy[a, 1], x, y) >= 0
+        side_of(nodes, a, b, node) >= 0
+        and side_of(nodes, b, c, node) >= 0
+        and side_of(nodes, c, a, node) >= 0
     )
 
 
 @kernel
-def _mark_goal(mesh: Mesh, search: Search) -> None:
+def _next_at(
+    boxes: np.ndarray, half_edges: np.ndarray, nodes: np.ndarray, node: int, t: int
+) -> int:
+    """First triangle from t on in which a node lies, or on its border; their number if none."""
+    x, y = nodes[node, X], nodes[node, Y]
+    while t < boxes.shape[0]:
+        if (
+            (x >= boxes[t, 0]) & (y >= boxes[t, 1]) & (x <= boxes[t, 2]) & (y <= boxes[t, 3])
+        ) and _holds(half_edges, nodes, t, node):
+            break
+        t += 1
+    return t
+
+
+@kernel
+def _mark_goal(
+    boxes: np.ndarray,
+    half_edges: np.ndarray,
+    outward: np.ndarray,
+    nodes: np.ndarray,
+    marks: np.ndarray,
+) -> None:
     """Mark the triangles of the goal, and those on the way out of its pocket."""
-    goal = search.xy.shape[0] - 1
-    for t in range(mesh.outward.shape[0]):
-        if _holds(mesh, t, search.xy[goal, 0], search.xy[goal, 1]):
-            search.has_goal[t] = True
-            search.leads_on[t] = True
-            while mesh.outward[t] >= 0:
-                t = mesh.twin[mesh.outward[t]] // 3
-                search.leads_on[t] = True
+    goal = nodes.shape[0] - 1
+    t = _next_at(boxes, half_edges, nodes, goal, 0)
+    while t < boxes.shape[0]:
+        marks[t] |= HAS_GOAL | LEADS_ON
+        way = t
+        while outward[way] >= 0:
+            way = half_edges[outward[way], WAY] // 3
+            marks[way] |= LEADS_ON
+        t = _next_at(boxes, half_edges, nodes, goal, t + 1)
+
+
+@inlined_kernel
+def _entry(half_edges: np.ndarray, marks: np.ndarray, h: int) -> int:
+    """Half-edge by which one enters the next triangle; NOWHERE if it leads to no goal."""
+    way = half_edges[h, WAY]
+    if way >= NOWHERE:
+        return way
+    return -way - 2 if marks[(-way - 2) // 3] & LEADS_ON else NOWHERE
 
 
 @kernel
-def _leads(mesh: Mesh, search: Search, entry: int) -> bool:
-    """Whether a half-edge leads into a triangle, and not into a pocket without the goal."""
-    if entry < 0:
-        return False
-    t = entry // 3
-    return mesh.outward[t] != entry or search.leads_on[t]
+def _distance(nodes: np.ndarray, a: int, b: int) -> float:
+    return np.sqrt((nodes[a, X] - nodes[b, X]) ** 2 + (nodes[a, Y] - nodes[b, Y]) ** 2)
 
 
 @kernel
-def _distance(xy: np.ndarray, a: int, b: int) -> float:
-    return np.sqrt((xy[a, 0] - xy[b, 0]) ** 2 + (xy[a, 1] - xy[b, 1]) ** 2)
-
-
-@allocating_kernel
-def _reach(search: Search, queue: list[Cone], node: int, root: int) -> None:
+def _reach(nodes: np.ndarray, queue: np.ndarray, size: int, node: int, root: int) -> int:
     """Come straight from a root to a node that it sees; queue the node if that is shorter."""
-    goal = search.xy.shape[0] - 1
-    cost = search.cost[root] + _distance(search.xy, root, node)
-    if cost < search.cost[node]:
-        search.cost[node] = cost
-        search.parent[node] = root
-        least = cost + _distance(search.xy, node, goal)
-        heapq.heappush(queue, (least, -1, node, node, node, node, node))
-
-
-@allocating_kernel
-def _reach_corner(mesh: Mesh, search: Search, queue: list[Cone], h: int, root: int) -> None:
-    """Come to the origin of a half-edge that a root sees, if a path may bend there.
-
-    It may if the line from the root leaves the corner's solid on one side.
-    """
-    v = mesh.origin[h]
-    if not mesh.bends[h] or search.closed[v]:
-        return
-    after, before = _neighbours(mesh, v)
-    xy = search.xy
-    if (xy[v, 0] == xy[root, 0] and xy[v, 1] == xy[root, 1]) or (
-        side_of(xy, root, v, after) * side_of(xy, root, v, before) < 0
-    ):
-        return
-    _reach(search, queue, v, root)
+    cost = nodes[root, COST] + _distance(nodes, root, node)
+    if cost >= nodes[node, COST]:
+        return size
+    nodes[node, COST] = cost
+    nodes[node, PARENT] = root
+    least = cost + _distance(nodes, node, nodes.shape[0] - 1)
+    return _push(queue, size, least, NOWHERE, node, node, node)
 
 
 @kernel
-def _neighbours(mesh: Mesh, v: int) -> tuple[int, int]:
-    """Ends of the sides that bound the free space around a corner, counter-clockwise."""
-    return mesh.origin[following(mesh.first[v])], mesh.origin[preceding(mesh.last[v])]
+def _reach_corner(
+    half_edges: np.ndarray,
+    fans: np.ndarray,
+    nodes: np.ndarray,
+    queue: np.ndarray,
+    size: int,
+    v: int,
+    root: int,
+) -> int:
+    """Come to a corner that a root sees, if the line there leaves its solid on one side."""
+    if nodes[v, CLOSED] != 0.0 or (nodes[v, X] == nodes[root, X] and nodes[v, Y] == nodes[root, Y]):
+        return size
+    after, before = (
+        half_edges[following(fans[v, FIRST]), ORIGIN],
+        half_edges[preceding(fans[v, LAST]), ORIGIN],
+    )
+    if side_of(nodes, root, v, after) * side_of(nodes, root, v, before) < 0:
+        return size
+    return _reach(nodes, queue, size, v, root)
 
 
-@allocating_kernel
-def _leave_start(mesh: Mesh, search: Search, queue: list[Cone]) -> int:
-    """Queue all that the start sees; return the number of triangles that it lies in."""
-    goal = search.xy.shape[0] - 1
+@kernel
+def _leave_start(
+    boxes: np.ndarray,
+    half_edges: np.ndarray,
+    fans: np.ndarray,
+    nodes: np.ndarray,
+    marks: np.ndarray,
+    queue: np.ndarray,
+) -> tuple[int, int]:
+    """Queue all that the start sees; the number of triangles that it lies in, and of rows."""
+    goal = nodes.shape[0] - 1
     start = goal - 1
-    found = 0
-    for t in range(mesh.outward.shape[0]):
-        if not _holds(mesh, t, search.xy[start, 0], search.xy[start, 1]):
-            continue
+    found, size = 0, 0
+    t = _next_at(boxes, half_edges, nodes, start, 0)
+    while t < boxes.shape[0]:
         found += 1
-        if search.has_goal[t]:
-            _reach(search, queue, goal, start)
+        if marks[t] & HAS_GOAL:
+            size = _reach(nodes, queue, size, goal, start)
         for h in range(3 * t, 3 * t + 3):
-            _reach_corner(mesh, search, queue, h, start)
-            a, b = mesh.origin[h], mesh.origin[following(h)]
-            if side_of(search.xy, a, b, start) > 0:
-                _queue(mesh, search, queue, (0.0, mesh.twin[h], start, start, b, start, a))
-    return found
-
-
-@allocating_kernel
-def _queue(mesh: Mesh, search: Search, queue: list[Cone], cone: Cone) -> None:
-    """Queue a cone that leads anywhere, with the least length of a path through it."""
-    if _leads(mesh, search, cone[1]):
-        heapq.heappush(queue, _bounded(mesh, search, cone))
+            a, b = half_edges[h, ORIGIN], half_edges[following(h), ORIGIN]
+            if half_edges[h, BENDS]:
+                size = _reach_corner(half_edges, fans, nodes, queue, size, a, start)
+            if side_of(nodes, a, b, start) > 0:
+                size = _queue(half_edges, nodes, marks, queue, size, 0.0, h, start, b, a)
+        t = _next_at(boxes, half_edges, nodes, start, t + 1)
+    return found, size
 
 
 @kernel
-def _bounded(mesh: Mesh, search: Search, cone: Cone) -> Cone:
-    """A cone with the least length of a path through it, given a bound of what it comes from."""
-    bound, entry, root, left, left_tip, right, right_tip = cone
-    a, b = mesh.origin[entry], mesh.origin[following(entry)]
-    detour = _detour(search.xy, a, b, root, left, left_tip, right, right_tip)
-    return max(bound, search.cost[root] + detour), entry, root, left, left_tip, right, right_tip
+def _queue(
+    half_edges: np.ndarray,
+    nodes: np.ndarray,
+    marks: np.ndarray,
+    queue: np.ndarray,
+    size: int,
+    bound: float,
+    h: int,
+    root: int,
+    left: int,
+    right: int,
+) -> int:
+    """Queue the cone that leaves a triangle by a half-edge, if it leads anywhere."""
+    entry = _entry(half_edges, marks, h)
+    if entry == NOWHERE:
+        return size
+    least = max(bound, _least(half_edges, nodes, h, root, left, right))
+    return _push(queue, size, least, entry, root, left, right)
 
 
 @kernel
-def _detour(
-    xy: np.ndarray, a: int, b: int, root: int, left: int, left_tip: int, right: int, right_tip: int
+def _least(
+    half_edges: np.ndarray, nodes: np.ndarray, h: int, root: int, left: int, right: int
 ) -> float:
-    """Least length of a way from a root to the goal through what a cone leaves of side a-b, metres.
+    """Least length of a path through a root and what a cone leaves of a side, to the goal, metres.
 
-    It never comes out longer than it is: that alone is what the search relies on.
+    The side is that of half-edge h, by which the cone leaves a triangle. It never comes out longer
+    than it is: that alone is what the search relies on.
     """
-    rx, ry = xy[root, 0], xy[root, 1]
-    ax, ay = xy[a, 0] - rx, xy[a, 1] - ry
-    ex, ey = xy[b, 0] - xy[a, 0], xy[b, 1] - xy[a, 1]
-    goal = xy.shape[0] - 1
-    gx, gy = xy[goal, 0] - rx, xy[goal, 1] - ry
+    a, b = half_edges[following(h), ORIGIN], half_edges[h, ORIGIN]  # as seen: on the left, right
+    goal = nodes.shape[0] - 1
+    rx, ry = nodes[root, X], nodes[root, Y]
+    ax, ay = nodes[a, X] - rx, nodes[a, Y] - ry
+    ex, ey = nodes[b, X] - nodes[a, X], nodes[b, Y] - nodes[a, Y]
+    gx, gy = nodes[goal, X] - rx, nodes[goal, Y] - ry
     behind = ey * (gx - ax) - ex * (gy - ay)
     if behind > 0.0:  # a way to the side and back is as long as one to the goal's mirror image
         share = 2.0 * behind / (ex * ex + ey * ey)
         gx -= share * ey
         gy += share * ex
-    dx, dy = xy[left_tip, 0] - xy[left, 0], xy[left_tip, 1] - xy[left, 1]
+    origin = int(nodes[root, PARENT]) if left == root else root
+    dx, dy = nodes[left, X] - nodes[origin, X], nodes[left, Y] - nodes[origin, Y]
     if dx * gy - dy * gx <= 0.0:
-        dx, dy = xy[right_tip, 0] - xy[right, 0], xy[right_tip, 1] - xy[right, 1]
+        origin = int(nodes[root, PARENT]) if right == root else root
+        dx, dy = nodes[right, X] - nodes[origin, X], nodes[right, Y] - nodes[origin, Y]
         if dx * gy - dy * gx >= 0.0:
-            return np.sqrt(gx * gx + gy * gy)
+            return nodes[root, COST] + np.sqrt(gx * gx + gy * gy)
     # Where the ray in direction d cuts the side, as a share of it.
     divisor = dx * ey - dy * ex
     error = ROUNDING * (abs(ax * dy) + abs(ay * dx) + abs(dx * ey) + abs(dy * ex))
     if abs(divisor) <= error:
-        return np.sqrt(gx * gx + gy * gy)
+        return nodes[root, COST] + np.sqrt(gx * gx + gy * gy)
     share = min(1.0, max(0.0, (ax * dy - ay * dx) / divisor))
     x, y = ax + share * ex, ay + share * ey
     way = np.sqrt(x * x + y * y) + np.sqrt((gx - x) ** 2 + (gy - y) ** 2)
-    return way - 2.0 * error / abs(divisor) * np.sqrt(ex * ex + ey * ey)
+    slack = 2.0 * error / abs(divisor) * np.sqrt(ex * ex + ey * ey)
+    return nodes[root, COST] + way - slack
 
 
-@allocating_kernel
-def _follow(mesh: Mesh, search: Search, queue: list[Cone], cone: Cone) -> int:
-    """Push a cone forward while it is the best there is; return the number of triangles seen."""
-    xy = search.xy
-    goal = xy.shape[0] - 1
-    seen = 0
-    while True:
-        seen += 1
-        bound, entry, root, left, left_tip, right, right_tip = cone
+@inlined_kernel
+def _side_of_ray(nodes: np.ndarray, root: int, tip: int, c: int) -> int:
+    """Side of a cone's ray on which a node lies."""
+    if tip == root:
+        return side_of(nodes, int(nodes[root, PARENT]), root, c)
+    return side_of(nodes, root, tip, c)
+
+
+@kernel
+def _follow(
+    half_edges: np.ndarray,
+    fans: np.ndarray,
+    nodes: np.ndarray,
+    marks: np.ndarray,
+    queue: np.ndarray,
+    size: int,
+) -> tuple[int, int]:
+    """Push the first cone forward while it is the best; the number of triangles, and of rows."""
+    goal = nodes.shape[0] - 1
+    bound, entry, root = queue[0, LEAST], int(queue[0, ENTRY]), int(queue[0, ROOT])
+    left, right = int(queue[0, LEFT]), int(queue[0, RIGHT])
+    size = _pop(queue, size)
+    for seen in range(1, IN_A_ROW + 1):
         if (
-            search.has_goal[entry // 3]
-            and side_of(xy, left, left_tip, goal) <= 0
-            and side_of(xy, right, right_tip, goal) >= 0
+            marks[entry // 3] & HAS_GOAL
+            and _side_of_ray(nodes, root, left, goal) <= 0
+            and _side_of_ray(nodes, root, right, goal) >= 0
         ):
-            _reach(search, queue, goal, root)
+            size = _reach(nodes, queue, size, goal, root)
         # On its left the triangle ends with the side from the apex, on its right with that to it.
         on_left, on_right = preceding(entry), following(entry)
-        apex = mesh.origin[on_left]
-        of_left, of_right = side_of(xy, left, left_tip, apex), side_of(xy, right, right_tip, apex)
-        if of_left <= 0 and of_right >= 0:
-            _reach_corner(mesh, search, queue, on_left, root)
-        one = two = (np.inf, -1, root, left, left_tip, right, right_tip)
-        if of_left < 0 and _leads(mesh, search, mesh.twin[on_left]):
-            if of_right > 0:
-                one = (bound, mesh.twin[on_left], root, left, left_tip, root, apex)
-            else:
-                one = (bound, mesh.twin[on_left], root, left, left_tip, right, right_tip)
-            one = _bounded(mesh, search, one)
-        if of_right > 0 and _leads(mesh, search, mesh.twin[on_right]):
-            if of_left < 0:
-                two = (bound, mesh.twin[on_right], root, root, apex, right, right_tip)
-            else:
-                two = (bound, mesh.twin[on_right], root, left, left_tip, right, right_tip)
-            two = _bounded(mesh, search, two)
-        if two[0] < one[0]:
-            one, two = two, one
-        if two[1] >= 0:
-            heapq.heappush(queue, two)
-        if one[1] < 0:
-            return seen
-        if len(queue) > 0 and queue[0][0] < one[0]:
-            heapq.heappush(queue, one)
-            return seen
-        cone = one
+        apex = half_edges[on_left, ORIGIN]
+        of_left = _side_of_ray(nodes, root, left, apex)
+        of_right = _side_of_ray(nodes, root, right, apex)
+        if of_left <= 0 and of_right >= 0 and half_edges[on_left, BENDS]:
+            size = _reach_corner(half_edges, fans, nodes, queue, size, apex, root)
+        entry, other = NOWHERE, NOWHERE
+        if of_left < 0:
+            entry = _entry(half_edges, marks, on_left)
+        if of_right > 0:
+            other = _entry(half_edges, marks, on_right)
+        one = two = np.inf
+        one_right = apex if of_right > 0 else right
+        two_left = apex if of_left < 0 else left
+        if entry != NOWHERE:
+            one = max(bound, _least(half_edges, nodes, on_left, root, left, one_right))
+        if other != NOWHERE:
+            two = max(bound, _least(half_edges, nodes, on_right, root, two_left, right))
+        if entry == NOWHERE and other == NOWHERE:
+            return seen, size
+        if two < one:
+            if entry != NOWHERE:
+                size = _push(queue, size, one, entry, root, left, one_right)
+            bound, entry, left = two, other, two_left
+        else:
+            if other != NOWHERE:
+                size = _push(queue, size, two, other, root, two_left, right)
+            bound, right = one, one_right
+        if seen == IN_A_ROW or (size > 0 and queue[0, LEAST] < bound):
+            break
+    return seen, _push(queue, size, bound, entry, root, left, right)
 
 
-@allocating_kernel
-def _turn(mesh: Mesh, search: Search, queue: list[Cone], bound: float, v: int) -> int:
+@kernel
+def _turn(
+    half_edges: np.ndarray,
+    fans: np.ndarray,
+    nodes: np.ndarray,
+    marks: np.ndarray,
+    queue: np.ndarray,
+    size: int,
+    bound: float,
+    v: int,
+) -> tuple[int, int]:
     """Queue what is seen from a corner by paths that turn around its solid, or go straight on.
 
-    Straight on exactly: rounding here would prune collinear routes.
+    From the solid, which lies on one side of the way to the corner, triangle by triangle to the
+    prolongation of that way. Exactly: rounding here would prune collinear routes. Returns the
+    number of triangles, and of rows.
     """
-    before = search.parent[v]
-    after, behind = _neighbours(mesh, v)
-    side = side_of(search.xy, before, v, after)
+    goal = nodes.shape[0] - 1
+    p = int(nodes[v, PARENT])
+    side = side_of(nodes, p, v, half_edges[following(fans[v, FIRST]), ORIGIN])
     if side == 0:
-        side = side_of(search.xy, before, v, behind)
-    if side < 0:
-        return _turn_right(mesh, search, queue, bound, v)
-    return _turn_left(mesh, search, queue, bound, v)
-
-
-@allocating_kernel
-def _turn_right(mesh: Mesh, search: Search, queue: list[Cone], bound: float, v: int) -> int:
-    """Sweep from the solid on the right of a corner, counter-clockwise, to straight on."""
-    xy, goal, p = search.xy, search.xy.shape[0] - 1, search.parent[v]
-    h = mesh.first[v]
-    _reach_corner(mesh, search, queue, following(h), v)
+        side = side_of(nodes, p, v, half_edges[preceding(fans[v, LAST]), ORIGIN])
+    h = fans[v, FIRST] if side < 0 else fans[v, LAST]
+    near = following(h) if side < 0 else preceding(h)
+    if half_edges[near, BENDS]:
+        size = _reach_corner(half_edges, fans, nodes, queue, size, half_edges[near, ORIGIN], v)
     seen = 0
     while h >= 0:
         seen += 1
-        right, left = mesh.origin[following(h)], mesh.origin[preceding(h)]
-        entry = mesh.twin[following(h)]
-        if search.has_goal[h // 3] and side_of(xy, p, v, goal) <= 0:
-            _reach(search, queue, goal, v)
-        if side_of(xy, p, v, right) >= 0:
+        near = following(h) if side < 0 else preceding(h)
+        far = preceding(h) if side < 0 else following(h)
+        a, b = half_edges[near, ORIGIN], half_edges[far, ORIGIN]
+        if marks[h // 3] & HAS_GOAL and side * side_of(nodes, p, v, goal) >= 0:
+            size = _reach(nodes, queue, size, goal, v)
+        if side * side_of(nodes, p, v, a) <= 0:
             break
-        of_left = side_of(xy, p, v, left)
-        if of_left > 0:
-            _queue(mesh, search, queue, (bound, entry, v, p, v, v, right))
+        of_far = side * side_of(nodes, p, v, b)
+        if of_far < 0:
+            b = v  # the cone ends with the prolongation
+        left, right = (b, a) if side < 0 else (a, b)
+        size = _queue(half_edges, nodes, marks, queue, size, bound, following(h), v, left, right)
+        if of_far < 0:
             break
-        _queue(mesh, search, queue, (bound, entry, v, v, left, v, right))
-        _reach_corner(mesh, search, queue, preceding(h), v)
-        h = mesh.twin[preceding(h)]
-    return seen
+        if half_edges[far, BENDS]:
+            size = _reach_corner(half_edges, fans, nodes, queue, size, b, v)
+        h = _beside(half_edges, h, side)
+    return seen, size
 
 
-@allocating_kernel
-def _turn_left(mesh: Mesh, search: Search, queue: list[Cone], bound: float, v: int) -> int:
-    """Sweep from the solid on the left of a corner, clockwise, to straight on."""
-    xy, goal, p = search.xy, search.xy.shape[0] - 1, search.parent[v]
-    h = mesh.last[v]
-    _reach_corner(mesh, search, queue, preceding(h), v)
-    seen = 0
-    while h >= 0:
-        seen += 1
-        right, left = mesh.origin[following(h)], mesh.origin[preceding(h)]
-        entry = mesh.twin[following(h)]
-        if search.has_goal[h // 3] and side_of(xy, p, v, goal) >= 0:
-            _reach(search, queue, goal, v)
-        if side_of(xy, p, v, left) <= 0:
-            break
-        of_right = side_of(xy, p, v, right)
-        if of_right < 0:
-            _queue(mesh, search, queue, (bound, entry, v, v, left, p, v))
-            break
-        _queue(mesh, search, queue, (bound, entry, v, v, left, v, right))
-        _reach_corner(mesh, search, queue, following(h), v)
-        h = mesh.twin[h]
-        if h >= 0:
-            h = following(h)
-    return seen
+@kernel
+def _beside(half_edges: np.ndarray, h: int, side: int) -> int:
+    """The half-edge from the same origin in the next triangle: counter-clockwise if side < 0."""
+    way = half_edges[preceding(h) if side < 0 else h, WAY]
+    if way == NOWHERE:
+        return NOWHERE
+    other = way if way >= 0 else -way - 2
+    return other if side < 0 else following(other)
