@@ -469,25 +469,25 @@ def _follow(
             entry = _entry(half_edges, marks, on_left)
         if of_right > 0:
             other = _entry(half_edges, marks, on_right)
-        one = two = np.inf
         one_right = apex if of_right > 0 else right
         two_left = apex if of_left < 0 else left
-        if entry != NOWHERE:
-            one = max(bound, _least(half_edges, nodes, on_left, root, left, one_right))
-        if other != NOWHERE:
-            two = max(bound, _least(half_edges, nodes, on_right, root, two_left, right))
         if entry == NOWHERE and other == NOWHERE:
             return seen, size
-        if two < one:
-            if entry != NOWHERE:
-                size = _push(queue, size, one, entry, root, left, one_right)
-            bound, entry, left = two, other, two_left
+        if other == NOWHERE:  # the only way on: nothing to choose
+            right = one_right
+        elif entry == NOWHERE:
+            entry, left = other, two_left
         else:
-            if other != NOWHERE:
+            one = max(bound, _least(half_edges, nodes, on_left, root, left, one_right))
+            two = max(bound, _least(half_edges, nodes, on_right, root, two_left, right))
+            if two < one:
+                size = _push(queue, size, one, entry, root, left, one_right)
+                bound, entry, left = two, other, two_left
+            else:
                 size = _push(queue, size, two, other, root, two_left, right)
-            bound, right = one, one_right
-        if seen == IN_A_ROW or (size > 0 and queue[0, LEAST] < bound):
-            break
+                bound, right = one, one_right
+            if queue[0, LEAST] < bound:
+                break
     return seen, _push(queue, size, bound, entry, root, left, right)
 
 
