@@ -47,11 +47,7 @@ ORIGIN, WAY, BENDS = range(3)
 FIRST, LAST = range(2)
 
 
-class NoMesh(Exception):  # noqa: N818 (not an error of the program)
-    """Faces were cut into triangles that don't fit together."""
-
-
-def mesh_of(free: Sequence[Polygon], coordinates: Coordinates) -> Mesh:
+def mesh_of(free: Sequence[Polygon], coordinates: Coordinates) -> Mesh | None:
     """Cut free space into triangles.
 
     Parameters
@@ -63,12 +59,8 @@ def mesh_of(free: Sequence[Polygon], coordinates: Coordinates) -> Mesh:
 
     Returns
     -------
-    Mesh
-
-    Raises
-    ------
-    NoMesh
-        If the triangulation is none: a triangle without area, or a side that ends within another.
+    Mesh or None
+        None if the triangulation is none: a triangle has no area, or a side ends within another.
     """
     local = shapely.transform(np.array(free, dtype=np.object_), coordinates.local)
     cut = shapely.get_parts(shapely.constrained_delaunay_triangles(local))
@@ -77,7 +69,8 @@ def mesh_of(free: Sequence[Polygon], coordinates: Coordinates) -> Mesh:
     places, origin = np.unique(_as_complex(corners), return_inverse=True)
     vertices = coordinates.world(np.stack([places.real, places.imag], axis=1))
     twin = _twins(origin, len(vertices))
-    _check_sides(local, places, origin, twin)
+    if not _fit(local, places, origin, twin):
+        return None
     mesh = Mesh(
         vertices=vertices,
         half_edges=np.stack([origin, twin, np.zeros_like(twin)], axis=1).astype(np.int64),
@@ -87,7 +80,7 @@ def mesh_of(free: Sequence[Polygon], coordinates: Coordinates) -> Mesh:
         most=int(np.bincount(origin).max(initial=0)),
     )
     if not _mark(mesh.vertices, mesh.half_edges, mesh.fans, mesh.outward):
-        raise NoMesh("a triangle has no area")
+        return None
     for table in mesh[:-1]:
         table.setflags(write=False)
     return mesh
@@ -113,13 +106,13 @@ def _twins(origin: NDArray[np.int64], count: int) -> NDArray[np.int64]:
     return np.where(there[found] == back, found, -1)
 
 
-def _check_sides(
+def _fit(
     free: NDArray[np.object_],
     places: NDArray[np.complex128],
     origin: NDArray[np.int64],
     twin: NDArray[np.int64],
-) -> None:
-    """Refuse triangles of which a side is neither another's nor one of a face."""
+) -> bool:
+    """Whether each side of a triangle is another's too, or one of a face."""
     rings = shapely.get_rings(free)
     xy, ring = shapely.get_coordinates(rings, return_index=True)
     numbers = np.searchsorted(places, _as_complex(xy))
@@ -130,8 +123,7 @@ def _check_sides(
     open_ends = np.flatnonzero(twin < 0)
     a, b = origin[open_ends], origin[_after(open_ends)]
     alone = np.unique(np.minimum(a, b) * len(places) + np.maximum(a, b))
-    if not np.isin(alone, sides).all():
-        raise NoMesh("a side ends within another")
+    return bool(np.isin(alone, sides).all())
 
 
 def _boxes(triangles: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -7,7 +7,6 @@ signs of input coordinates alone; only lengths are rounded. Metres.
 """
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,7 @@ from suite.geometry.mesh import BENDS, FIRST, LAST, ORIGIN, WAY, Mesh, following
 from suite.geometry.predicates import orientation
 from suite.jit import allocating_kernel, inlined_kernel, kernel
 from suite.scenes.scene import Query, Scene
+from suite.scenes.visibility import tangent_path, without_straight_bends
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,7 +24,8 @@ class ExactPath:
 
     path : (n, 2) float64, metres, start to goal; None if the goal can't be reached.
     length : float, metres; infinite if the goal can't be reached.
-    checks : triangles that the search looked into, each as often as it did.
+    checks : questions that the search asked: triangles that it looked into, each as often as it
+        did; or segments, in a scene without a mesh.
     """
 
     path: NDArray[np.float64] | None
@@ -32,10 +33,10 @@ class ExactPath:
     checks: int
 
 
-def prepare(scene: Scene) -> Mesh:
+def prepare(scene: Scene) -> Mesh | None:
     """Make what the solver needs of a scene beside its arrangement; kept with the scene.
 
-    The first query does it by itself. Whoever measures queries calls this before.
+    The first query does it by itself. Whoever measures queries, or preparing, calls this before.
 
     Parameters
     ----------
@@ -43,7 +44,8 @@ def prepare(scene: Scene) -> Mesh:
 
     Returns
     -------
-    Mesh
+    Mesh or None
+        None if free space can't be cut into triangles: the solver then asks about segments.
     """
     return scene.mesh
 
@@ -73,23 +75,19 @@ def shortest_path(scene: Scene, query: Query) -> ExactPath:
     >>> found.path.tolist()
     [[0.0, 3.0], [4.0, 7.0], [6.0, 7.0], [10.0, 3.0]]
     """
-    order, checks = _search(
-        query.start[0], query.start[1], query.goal[0], query.goal[1], prepare(scene)
-    )
+    path, checks = _path(scene, query)
+    return ExactPath(path, np.inf if path is None else path_length(path), checks)
+
+
+def _path(scene: Scene, query: Query) -> tuple[NDArray[np.float64] | None, int]:
+    mesh = prepare(scene)
+    if mesh is None:
+        return tangent_path(scene, query)
+    order, checks = _search(query.start[0], query.start[1], query.goal[0], query.goal[1], mesh)
     if order.size == 0:
-        return ExactPath(None, np.inf, int(checks))
-    path = np.vstack([query.start, scene.mesh.vertices[order[1:-1]], query.goal])
-    path = np.ascontiguousarray(path[bends(path)])
-    return ExactPath(path, path_length(path), int(checks))
-
-
-def bends(path: NDArray[np.float64]) -> list[int]:
-    """Rows of a path without those that it passes straight on, or in which it starts or ends."""
-    kept = [0]
-    for i, j in pairwise(range(1, len(path))):
-        if orientation(*path[kept[-1]], *path[i], *path[j]) != 0:
-            kept.append(i)
-    return [*kept, len(path) - 1]
+        return None, int(checks)
+    path = np.vstack([query.start, mesh.vertices[order[1:-1]], query.goal])
+    return without_straight_bends(path), int(checks)
 
 
 def path_length(path: NDArray[np.float64]) -> float:

@@ -117,8 +117,8 @@ class Scene:
         return arrange(self.workspace, [p for o in self.obstacles for p in self.closed_by(o)])
 
     @cached_property
-    def mesh(self) -> Mesh:
-        """Free space as triangles, for the exact solver."""
+    def mesh(self) -> Mesh | None:
+        """Free space as triangles, for the exact solver; None if it can't be cut into any."""
         return mesh_of(self.arrangement.free, self.coordinates)
 
     def closed_by(self, obstacle: Obstacle) -> list[Polygon]:

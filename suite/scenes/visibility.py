@@ -1,4 +1,7 @@
-"""The exact shortest path among polygons: lazy A* over the tangent visibility graph.
+"""The shortest path among polygons by lazy A* over the tangent visibility graph: a second opinion.
+
+It asks nothing but whether segments are free, as planners do. That makes it the planner
+``visibility-graph``, the oracle of the tests, and what stands in where no mesh can be made.
 
 A shortest path bends only at corners where solid is convex, and only around them; so the search
 generates edges that are tangent at both ends and turn tautly around their tail, and tests whether
@@ -7,28 +10,30 @@ Dellin and Srinivasa 2016 for lazy edge evaluation). Metres.
 """
 
 import heapq
+from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from suite.geometry.kernels import ObstacleArrays, segment_enters
 from suite.geometry.predicates import orientation
 from suite.jit import allocating_kernel
-from suite.scenes.exact import ExactPath, bends, path_length
 from suite.scenes.scene import Query, Scene
 
 
-def tangent_path(scene: Scene, query: Query) -> ExactPath:
-    """Shortest feasible path from start to goal.
+def tangent_path(scene: Scene, query: Query) -> tuple[NDArray[np.float64] | None, int]:
+    """Shortest feasible path from start to goal, and how many segments the search asked about.
 
     Parameters
     ----------
     scene : Scene
     query : Query
-        One of the scene's own, or any other whose ends lie in free space.
+        One of the scene's own, or any other. There is no path where an end is not in free space.
 
     Returns
     -------
-    ExactPath
+    path : (n, 2) float64, metres, or None if there is none
+    checks : int
 
     Examples
     --------
@@ -38,9 +43,9 @@ def tangent_path(scene: Scene, query: Query) -> ExactPath:
     ...     "one box", shapely.box(0, 0, 10, 10), [shapely.box(4, 0, 6, 7)],
     ...     {"main": ((0, 3), (10, 3))},
     ... )
-    >>> found = tangent_path(scene, scene.query())
-    >>> found.path.tolist()
-    [[0.0, 3.0], [4.0, 7.0], [6.0, 7.0], [10.0, 3.0]]
+    >>> path, checks = tangent_path(scene, scene.query())
+    >>> path.tolist(), checks
+    ([[0.0, 3.0], [4.0, 7.0], [6.0, 7.0], [10.0, 3.0]], 4)
     """
     arrangement = scene.arrangement
     order, checks = _search(
@@ -52,10 +57,24 @@ def tangent_path(scene: Scene, query: Query) -> ExactPath:
         arrangement.arrays,
     )
     if order.size == 0:
-        return ExactPath(None, np.inf, int(checks))
+        return None, int(checks)
     nodes = np.vstack([arrangement.corners[:, :2], query.start, query.goal])
-    path = np.ascontiguousarray(nodes[order][bends(nodes[order])])
-    return ExactPath(path, path_length(path), int(checks))
+    return without_straight_bends(nodes[order]), int(checks)
+
+
+def without_straight_bends(path: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A path (n, 2) without the points that it passes straight on, or in which it starts or ends.
+
+    Examples
+    --------
+    >>> without_straight_bends(np.array([(0, 0), (1, 0), (2, 0), (2, 5.0)])).tolist()
+    [[0.0, 0.0], [2.0, 0.0], [2.0, 5.0]]
+    """
+    kept = [0]
+    for i, j in pairwise(range(1, len(path))):
+        if orientation(*path[kept[-1]], *path[i], *path[j]) != 0:
+            kept.append(i)
+    return np.ascontiguousarray(path[[*kept, len(path) - 1]])
 
 
 @allocating_kernel
