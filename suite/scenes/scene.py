@@ -28,6 +28,7 @@ from suite.geometry.coordinates import Coordinates, coordinates_of, printed
 from suite.geometry.coverage import left_open
 from suite.geometry.growth import grown, shrunk
 from suite.geometry.kernels import PARTS, ObstacleArrays
+from suite.geometry.mesh import Mesh, mesh_of
 from suite.geometry.tolerances import LARGEST
 from suite.scenes.dynamics import Dynamics, as_text
 from suite.scenes.free_space import free_regions, nearest_free
@@ -117,7 +118,7 @@ class Scene:
 
     def __getstate__(self) -> dict[str, Any]:
         """All but what is made of it: arrays would come back writable, another type to numba."""
-        made = ("arrangement", "at_first", "regions")
+        made = ("arrangement", "at_first", "regions", "mesh")
         state = {k: v for k, v in self.__dict__.items() if k not in made}
         return state | {"properties": dict(self.properties)}
 
@@ -136,6 +137,11 @@ class Scene:
     def arrangement(self) -> Arrangement:
         """The plane divided into free space, obstacle groups and the frame."""
         return arrange(self.workspace, [p for o in self.obstacles for p in self.closed_by(o)])
+
+    @cached_property
+    def mesh(self) -> Mesh | None:
+        """Free space as triangles, for the exact solver; None if it can't be cut into any."""
+        return mesh_of(self.arrangement.free, self.coordinates)
 
     def closed_by(self, obstacle: Obstacle) -> list[Polygon]:
         """What an obstacle closes of the workspace; one that moves is cut at the border."""
@@ -522,7 +528,7 @@ def renamed(scene: Scene, name: str) -> Scene:
 def _with_same_geometry(scene: Scene, **changes: Any) -> Scene:
     """A copy that keeps the arrangement, which took its time."""
     copy = replace(scene, **changes)
-    kept = ("arrangement", "regions", "hash", "coordinates")
+    kept = ("arrangement", "mesh", "regions", "hash", "coordinates")
     copy.__dict__.update({key: scene.__dict__[key] for key in kept if key in scene.__dict__})
     return copy
 
