@@ -5,6 +5,7 @@ The unit is the query: its seeds are put together first, see
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from suite.report.statistics.anytime import Steps
 from suite.report.statistics.clock import untimed_note
 from suite.report.statistics.inference import LEVEL, Array, Interval, bootstrap, holm, signed_rank
 from suite.report.statistics.over_queries import TARGETS, only_maps, query_measures, time_to
-from suite.report.table import Kind, Table
+from suite.report.table import INFINITE, Kind, Table
 from suite.report.tables.statistics import REFERENCE
 from suite.report.words import joined
 
@@ -79,14 +80,14 @@ def map_tables(
     frame = over_queries(measures, blocked_queries(runs), rng)
     note = joined(NOTE, untimed_note(shown.runs))
     narrow = [name for name in NARROW if name != "blocked" or frame["blocked"].any()]
-    infinite = {"infinite": "never", "infinite_in": dict.fromkeys(_GAPS, "infinite")}
-    tables = [
-        Table("maps", "Maps: each planner over all queries", frame[narrow], note, **infinite),
-        Table(
-            "maps-rows", "All measures of each planner over the queries of a map", frame,
-            f"{note} {ROWS_NOTE}", detail=True, **infinite,
-        ),
-    ]  # fmt: skip
+    maps = Table(
+        "maps", "Maps: each planner over all queries", frame[narrow], note, "never",
+        infinite_in=dict.fromkeys(_GAPS, INFINITE),
+    )  # fmt: skip
+    title = "All measures of each planner over the queries of a map"
+    told = f"{note} {ROWS_NOTE}"
+    rows = replace(maps, name="maps-rows", title=title, frame=frame, note=told, detail=True)
+    tables = [maps, rows]
     names = list(dict.fromkeys(measures["variant"]))
     if len(names) > 1:
         one = reference or (REFERENCE if REFERENCE in names else names[0])
