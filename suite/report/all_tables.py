@@ -38,6 +38,11 @@ from suite.store.read import (
 BOOTSTRAP_SEED = 2004
 """Any will do; the same rows give the same intervals."""
 
+WITHOUT_MAPS = (
+    "Maps, scenes of many queries, are not here: there the queries are the sample and not the "
+    "runs; the table maps-paired says how surely planners differ."
+)
+
 
 def all_tables(
     runs: pd.DataFrame,
@@ -160,12 +165,12 @@ def _or_empty(frame: pd.DataFrame | None) -> pd.DataFrame:
 
 def measured_tables(steps: Steps, reference: str | None = None) -> list[Table]:
     """The ranking, fixed targets and budgets, and the statistics of runs as step functions."""
+    apart = only_maps(steps, maps=False)
+    told = WITHOUT_MAPS if len(apart.runs) < len(steps.runs) else ""
+    surely = statistics_tables(apart, np.random.default_rng(BOOTSTRAP_SEED), reference)
     return [
         *ranking_tables(steps, reference),
         *target_tables(steps),
         *budget_tables(steps),
-        # Of a map the queries are the sample, not the runs: its tables say how surely there.
-        *statistics_tables(
-            only_maps(steps, maps=False), np.random.default_rng(BOOTSTRAP_SEED), reference
-        ),
+        *(replace(table, note=joined(table.note, told)) for table in surely),
     ]

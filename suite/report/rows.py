@@ -91,6 +91,18 @@ def places(runs: pd.DataFrame) -> "pd.Series[str]":
     return pd.Series([names.get(pair, pair[0]) for pair in pairs], runs.index, dtype="object")
 
 
+def maps_note(runs: pd.DataFrame) -> str:
+    """That the rows of a map are over all its queries, as a sentence; empty if there is none."""
+    maps = runs.loc[is_of_map(runs), "scene"].nunique()
+    if not maps:
+        return ""
+    many = "a scene" if maps == 1 else "scenes"
+    return (
+        f"Of {counted(maps, 'map')}, {many} of many queries, the runs of all queries are put "
+        "together here; the table maps takes each query as one."
+    )
+
+
 def with_queries_together(runs: pd.DataFrame) -> pd.DataFrame:
     """The rows with the queries of a map under one name, for tables that group by :data:`NAME`."""
     number = runs.groupby("scene")["query"].transform("nunique")

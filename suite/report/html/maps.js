@@ -55,9 +55,15 @@ for (const panel of document.querySelectorAll("[data-map]")) {
     drawMarks();
   };
 
+  // The marks stay: of thousands a browser takes a while to draw them anew.
+  const choose = () => {
+    drawMap();
+    if (data) Plotly.relayout(plot, { annotations: numbers() });
+  };
+
   plotlyThere.then(() => {
     draw();
-    if (choice) choice.addEventListener("change", draw);
+    if (choice) choice.addEventListener("change", choose);
     for (const box of boxes) box.addEventListener("change", draw);
     for (const button of panel.querySelectorAll("[data-all]")) {
       button.addEventListener("click", () => {
@@ -70,7 +76,7 @@ for (const panel of document.querySelectorAll("[data-map]")) {
         const number = points.map((point) => point.data.meta[point.pointNumber]).find(Boolean);
         if (!number) return;
         choice.value = String(number);
-        draw();
+        choose();
       });
     }
   });

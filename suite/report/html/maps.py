@@ -29,11 +29,11 @@ from suite.scenes.scene import Scene
 MAPS_AT_MOST = 24
 """A page of more is not looked at."""
 
-HARDEST = 8
-"""Queries that are drawn on a map: lines of more can't be told apart."""
-
 MARKS_AT_MOST = 12_000
 """Of a scatter: a browser takes seconds to draw more."""
+
+MANY = 300
+"""Marks of a planner from which they are drawn smaller."""
 
 ABOVE = 4.0
 """How far the axis goes on above the largest gap, for the queries without path."""
@@ -121,7 +121,7 @@ def map_panels(evidence: Evidence, number: int) -> tuple[list[MapPanel], int]:
 def _panel(
     number: int, name: str, measures: pd.DataFrame, runs: pd.DataFrame, evidence: Evidence
 ) -> MapPanel:
-    shown = hardest(measures, HARDEST)
+    shown = hardest(measures)
     planners = [
         planner
         for planner in dict.fromkeys(measures["variant"])
@@ -221,7 +221,7 @@ def _marks(
         "hard": [numbers.get(str(name), 0) for name in kept.index],
         "planners": [
             {
-                "trace": _mark_style(planner, look),
+                "trace": _mark_style(planner, look, len(kept)),
                 # False: was not asked; None: found no path.
                 "gaps": [
                     (short(g) if np.isfinite(g) else None) if there else False
@@ -238,8 +238,9 @@ def _marks(
     return data, len(lengths) - len(kept)
 
 
-def _mark_style(planner: str, look: Appearance) -> dict[str, Any]:
-    marker = {"color": look.colour, "symbol": look.symbol, "size": 7, "opacity": 0.65}
+def _mark_style(planner: str, look: Appearance, marks: int) -> dict[str, Any]:
+    size = 7 if marks < MANY else 4
+    marker = {"color": look.colour, "symbol": look.symbol, "size": size, "opacity": 0.65}
     trace = go.Scatter(name=planner, mode="markers", marker=marker)
     hover = {"hovertemplate": "%{text}<br>%{x} m, %{customdata}"}
     return dict(trace.to_plotly_json()) | hover

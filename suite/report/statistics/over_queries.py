@@ -15,6 +15,9 @@ from suite.report.statistics.clock import by_the_clock
 TARGETS = (0.05, 0.02, 0.01)
 """Gaps to the optimum that a time is told for."""
 
+HARDEST = 8
+"""Queries that are drawn on a map: lines of more can't be told apart."""
+
 QUERY = ["place", "query", "variant"]
 """What a row of the measures is of."""
 
@@ -74,7 +77,7 @@ def query_measures(steps: Steps) -> pd.DataFrame:
 
 
 def _times(steps: Steps) -> pd.DataFrame:
-    """Medians of the times to the targets; infinity is a value, and nan makes nan."""
+    """Medians of the times to the targets, of which infinity is one."""
     timed = by_the_clock(steps.runs)
     columns = {}
     for target in TARGETS:
@@ -83,11 +86,11 @@ def _times(steps: Steps) -> pd.DataFrame:
         columns[f"cpu {time_to(target)}"] = first_within(steps, "cpu_s", target)
     taken = pd.DataFrame(columns)
     by = [steps.runs[name] for name in QUERY]
-    # Half way between a number and infinity is infinity, half way between two of them too.
+    # Half way between a number and infinity is infinity; nan is left out.
     return taken.groupby(by, sort=False).median()
 
 
-def hardest(measures: pd.DataFrame, most: int) -> list[str]:
+def hardest(measures: pd.DataFrame, most: int = HARDEST) -> list[str]:
     """The hardest queries of a map: those that most planners fail, then those of the largest gap.
 
     Parameters
