@@ -16,6 +16,7 @@ from suite.report.figures import style
 from suite.report.figures.comparison import ABOVE, mark_no_path
 from suite.report.figures.panels import PLANNERS_AT_MOST, scene_panels, title
 from suite.report.figures.scene import draw_obstacles, draw_room
+from suite.report.statistics.over_queries import HARDEST_RULE
 from suite.scenes.scene import Query, Scene
 
 WIDTH = 7.6
@@ -29,8 +30,7 @@ LOGARITHMIC_FROM = 20.0
 """Of the longest query over the shortest, from which the axis of lengths is logarithmic."""
 
 MAP_NOTE = (
-    "{shown} of {queries} queries, the hardest: those that most planners find no path for, of "
-    "equals those of the largest gap of the best planner. Ring: start, with the query's number; "
+    "{shown} of {queries} queries, the hardest: {rule}. Ring: start, with the query's number; "
     "diamond: goal. The cheapest path of each planner over all seeds."
 )
 SCATTER_NOTE = (
@@ -76,7 +76,7 @@ def plot_map(
     axes.set_xlabel("x (m)", fontsize=style.LABEL)
     axes.set_ylabel("y (m)", fontsize=style.LABEL)
     style.heading(figure, scene.name)
-    note = MAP_NOTE.format(shown=len(hard), queries=queries)
+    note = MAP_NOTE.format(shown=len(hard), queries=queries, rule=HARDEST_RULE)
     style.legend(figure, planners, note, only_lines=True)
     return figure
 

@@ -20,7 +20,7 @@ from suite.report.html.drawing import Drawing, Place, draw
 from suite.report.html.evidence import Evidence
 from suite.report.html.scenes import BestPath, best_paths
 from suite.report.statistics.inference import Array
-from suite.report.statistics.over_queries import hardest, only_maps, query_measures
+from suite.report.statistics.over_queries import HARDEST_RULE, hardest, only_maps, query_measures
 from suite.report.table import Table
 from suite.report.words import fixed, query_label
 from suite.scenes.catalogue import scene_as_it_was
@@ -41,10 +41,8 @@ ABOVE = 4.0
 LOGARITHMIC_FROM = 20.0
 """Of the longest query over the shortest, from which the axis of lengths is logarithmic."""
 
-HARDEST_NOTE = (
-    "The hardest queries: those that most planners find no path for, of equals those of the "
-    "largest gap of the best planner. Gaps (%) are means over the seeds."
-)
+HARDEST_NOTE = f"The hardest: {HARDEST_RULE}. Gaps (%) are means over the seeds."
+TABLE_NOTE = "What the columns say stands below the table of all maps, among the tables."
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -177,7 +175,9 @@ def _table(number: int, name: str, evidence: Evidence) -> Sheet | None:
         if table.name == "maps":
             frame = table.frame[table.frame["scene"] == name].drop(columns="scene")
             title = f"Planners on {name}, over its queries"
-            return sheet(replace(table, name=f"map-{number}", title=title, frame=frame))
+            return sheet(
+                replace(table, name=f"map-{number}", title=title, frame=frame, note=TABLE_NOTE)
+            )
     return None
 
 

@@ -18,6 +18,11 @@ TARGETS = (0.05, 0.02, 0.01)
 HARDEST = 8
 """Queries that are drawn on a map: lines of more can't be told apart."""
 
+HARDEST_RULE = (
+    "those that most planners find no path for; of equals those of the largest gap of the best "
+    "planner, then of the largest mean gap"
+)
+
 QUERY = ["place", "query", "variant"]
 """What a row of the measures is of."""
 
@@ -91,7 +96,7 @@ def _times(steps: Steps) -> pd.DataFrame:
 
 
 def hardest(measures: pd.DataFrame, most: int = HARDEST) -> list[str]:
-    """The hardest queries of a map: those that most planners fail, then those of the largest gap.
+    """The hardest queries of a map; see :data:`HARDEST_RULE`.
 
     Parameters
     ----------
@@ -102,8 +107,7 @@ def hardest(measures: pd.DataFrame, most: int = HARDEST) -> list[str]:
     Returns
     -------
     list of str
-        Names of queries; first by the number of planners without a path, of equals by the gap of
-        the best planner there, of equals by the mean gap of all.
+        Names of queries with an optimum, the hardest first.
     """
     by_query = measures.assign(failed=measures["found"] == 0).groupby("query", sort=False)
     ranked = by_query.agg(
