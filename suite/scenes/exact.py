@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from suite.geometry.mesh import BENDS, FIRST, LAST, ORIGIN, WAY, Mesh, following, preceding, side_of
-from suite.geometry.predicates import orientation
 from suite.jit import allocating_kernel, inlined_kernel, kernel
 from suite.scenes.scene import Query, Scene
 from suite.scenes.visibility import tangent_path, without_straight_bends

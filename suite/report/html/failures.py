@@ -5,7 +5,7 @@ from typing import Any
 import pandas as pd
 
 from suite.planner import PlanStatus
-from suite.report.rows import places
+from suite.report.rows import is_blocked, places
 from suite.report.table import Table
 from suite.report.words import some_of
 
@@ -68,7 +68,9 @@ def full_reasons(runs: pd.DataFrame) -> list[tuple[str, str]]:
 
 
 def _groups(runs: pd.DataFrame) -> Any:
-    lost = runs.assign(place=places(runs))[~runs["status"].isin(PlanStatus.SUCCESSES)]
+    # A query that can't be asked is no failure of a planner.
+    asked = runs[~is_blocked(runs)]
+    lost = asked.assign(place=places(asked))[~asked["status"].isin(PlanStatus.SUCCESSES)]
     last = lost["reason"].fillna("").astype(str).str.strip().str.rsplit("\n", n=1).str[-1]
     missing = (
         lost["status"]
