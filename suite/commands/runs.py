@@ -76,6 +76,10 @@ def run(
             "ends, and then run contended rows again for so long; 0: neither.",
         ),
     ] = 60.0,
+    maps: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="FOLDER", help="Add the maps of a folder to the scenes; repeatable."),
+    ] = None,
     plugin: PluginOption = None,
 ) -> None:
     """Run what a store still lacks of a matrix, each run in a process of its own.
@@ -90,6 +94,8 @@ def run(
     bit (see `merge`), 130 after Ctrl-C, 143 after SIGTERM.
 
     Example: kbga-bench run paper-static --store out/paper.db --jobs 2
+
+    Example: kbga-bench run real-maps --maps my_maps --store out/maps.db
 
     Example: kbga-bench run paper-static --store out/paper.db --executor dask --address tcp://n1:8786
     """
@@ -109,7 +115,7 @@ def run(
     if force and only_failed:
         raise typer.BadParameter("Give one of --force and --only-failed.", param_hint="--force")
     which = Which.ALL if force else Which.FAILED if only_failed else Which.MISSING
-    wanted = load_matrix(matrix)
+    wanted = load_matrix(matrix, maps=maps or [])
     if dry_run:
         from suite.harness.forecast import forecast_matrix
 
