@@ -115,6 +115,9 @@ def test_a_list_of_seeds_is_taken_as_it_is(written):
     assert matrix.seeds == (5, 2)
 
 
+OF_A_FOLDER = ("real-maps",)
+"""Matrices whose scenes are the user's maps."""
+
 OF_MANY_SCENES = ("obstacles", "alignment")
 """Matrices that take seconds to be read."""
 
@@ -124,6 +127,7 @@ OF_MANY_SCENES = ("obstacles", "alignment")
     [
         pytest.param(name, marks=pytest.mark.slow if name in OF_MANY_SCENES else [])
         for name in matrix_names()
+        if name not in OF_A_FOLDER
     ],
 )
 def test_the_outline_of_a_matrix_counts_what_would_be_run(name):
