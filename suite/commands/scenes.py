@@ -11,15 +11,20 @@ from typing import Annotated
 import typer
 
 from suite.commands.options import (
+    AtOption,
+    GoalOption,
     PluginOption,
     QueryOption,
+    RadiusOption,
     SceneArgument,
+    SnapOption,
+    StartOption,
     TextFormat,
     TextStyle,
     use_plugins,
 )
 from suite.commands.output import print_file, print_json, print_rows, say
-from suite.scenes.maps.options import Unknown
+from suite.scenes.maps.options import MapOptions, Unknown
 
 
 class What(StrEnum):
@@ -136,9 +141,7 @@ def import_map(
     scale: Annotated[
         float | None, typer.Option(metavar="F", help="Metres of a unit of the map.")
     ] = None,
-    radius: Annotated[
-        float | None, typer.Option(metavar="R", help="The robot's, metres: obstacles grow by it.")
-    ] = None,
+    radius: RadiusOption = None,
     style: TextStyle = TextFormat.TEXT,
 ) -> None:
     """Read a map of another format, and write it as a scene file, with the queries beside it.
@@ -160,16 +163,8 @@ def import_map(
     check_scene_file(output)
     if output.resolve() == Path(split_modifiers(source)[0]).resolve():
         raise SceneError(f"{output}: is the map itself. Name another file.")
-    said = {
-        "unknown": unknown,
-        "resolution": resolution,
-        "threshold": threshold,
-        "layer": layer,
-        "simplify": simplify,
-        "scale": scale,
-        "radius": radius,
-    }
-    scene = load_scene(with_modifiers(source, said))
+    options = MapOptions(unknown, resolution, threshold, layer, simplify)
+    scene = load_scene(with_modifiers(source, scale=scale, radius=radius, options=options))
     found = summary_of(scene)
     write_scene(scene, output)
     if style is TextFormat.JSON:
@@ -182,16 +177,36 @@ def import_map(
 def exact(
     scene: SceneArgument,
     query: QueryOption = None,
+    start: StartOption = None,
+    goal: GoalOption = None,
+    radius: RadiusOption = None,
+    snap: SnapOption = False,
+    at: AtOption = None,
     style: TextStyle = TextFormat.TEXT,
 ) -> None:
     """Compute the exact shortest path of a scene, or say that there is none.
 
-    Example: kbga-bench exact maze --format json
-    """
-    from suite.harness.single import exact_as_data, exact_as_text
+    Exit code 1 if an end of a query is not free, 0 otherwise.
 
-    found = exact_as_data(scene, query)
+    Example: kbga-bench exact maze --format json
+
+    Example: kbga-bench exact maze --radius 0.5 --start 10,20 --goal 45,80
+    """
+    from suite.harness.single import (
+        exact_as_data,
+        exact_as_line,
+        exact_as_text,
+        exact_summary,
+        query_names,
+    )
+    from suite.scenes.modifiers import with_modifiers
+
+    source = with_modifiers(scene, radius=radius, at=at, snap=snap)
+    found = [exact_as_data(source, name) for name in query_names(source, query, start, goal)]
     if style is TextFormat.JSON:
-        print_json(found)
+        print_json(found if query == "all" else found[0])
+    elif query == "all":
+        say("\n".join([*map(exact_as_line, found), exact_summary(found)]))
     else:
-        say(exact_as_text(found))
+        say(exact_as_text(found[0]))
+    raise typer.Exit(1 if any(one["reason"] is not None for one in found) else 0)

@@ -70,6 +70,11 @@ def attempt_cell(cell: Cell) -> RunRecord:
     return _run(cell, _blank(cell), Recorder(), lambda: None)
 
 
+def refused(cell: Cell, reason: str) -> RunRecord:
+    """The record of a run that is not begun, for a reason that no planner need be asked about."""
+    return replace(_blank(cell), status=PlanStatus.REFUSED, reason=reason)
+
+
 def _blank(cell: Cell) -> RunRecord:
     """The record of a run that has not begun."""
     return RunRecord(
@@ -87,6 +92,8 @@ def _run(
     scene, query = scene_as_it_was(
         cell.scene_source, cell.query, cell.scene_hash, load=prepared_scene
     )
+    if query.blocked is not None:
+        return refused(cell, query.blocked)
     planner = build_planner(cell.planner, cell.settings)
     planner.warm_up()
     reason = refusal(planner, scene, query, cell.budget)

@@ -19,6 +19,10 @@ from suite.scenes.exact import shortest_path
 from suite.scenes.scene import Scene, SceneWarning
 from suite.store.record import Cell
 
+MOST_OPTIMA = 2**17
+"""Kept in a process: of all queries of a matrix of maps, for each run leaves from a process that
+has computed them. Each takes a few hundred bytes."""
+
 
 def stream(cell: Cell) -> np.random.Generator:
     """The random stream of a cell: another one for each seed, scene, query and variant."""
@@ -45,15 +49,17 @@ def referee(source: str) -> Referee:
     return Referee(prepared_scene(source))
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=MOST_OPTIMA)
 def exact_optimum(source: str, query: str) -> float | None:
-    """Length of the exact shortest path of a query, metres; None if there is no path.
+    """Length of the exact shortest path of a query, metres; None if there is none.
 
     Always computed: what a scene file states holds for the geometry that it once had. If it is
     another length, a :class:`SceneWarning` says so.
     """
     scene = prepared_scene(source)
     wanted = scene.query(query)
+    if wanted.blocked is not None:
+        return None
     length = shortest_path(scene, wanted).length
     stated = scene.stored_optimum(wanted)
     if stated is not None and not abs(stated - length) <= OPTIMUM_RELATIVE * stated:

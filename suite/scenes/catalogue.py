@@ -13,18 +13,32 @@ drew the walls. Scenes that were once drawn on whole metres stay as they were, a
 
 import os
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 from suite.errors import SceneError, did_you_mean
+from suite.scenes.frozen import frozen
 from suite.scenes.geojson import read_scene, stated_radius
 from suite.scenes.maps.features import knows_no_roles
 from suite.scenes.maps.formats import FORMATS, WITHOUT_ROLES, read_map, understood
 from suite.scenes.maps.options import OPTIONS, MapOptions
-from suite.scenes.modifiers import MARK, PATHS, SUFFIXES, parse_modifiers, split_modifiers
+from suite.scenes.modifiers import (
+    MARK,
+    PATHS,
+    SUFFIXES,
+    Modifiers,
+    parse_modifiers,
+    split_modifiers,
+)
 from suite.scenes.moving import moving, moving_name, parse_moving_name
 from suite.scenes.scattered import parse_scattered_name, scattered, scattered_name
-from suite.scenes.scene import Query, Scene, make_scene, scene_fingerprint
+from suite.scenes.scene import (
+    Query,
+    Scene,
+    make_scene,
+    renamed,
+    scene_fingerprint,
+    with_snapped_ends,
+)
 from suite.scenes.similarity import modified
 
 _FOLDER = Path(__file__).parent / "files"
@@ -193,15 +207,24 @@ def load_scene(name_or_path: str | Path, *, inflate: float | None = None) -> Sce
     if not isinstance(name_or_path, Path):
         base, text = split_modifiers(name_or_path)
         if text:
-            modifiers = parse_modifiers(text, name_or_path)
-            radius = modifiers.radius if inflate is None else inflate
-            if modifiers.moves:
-                radius = _stated_radius(base) if radius is None else radius
-                scene = _unmodified(base, modifiers.options, 0.0)
-                return modified(scene, modifiers, inflate=radius)
-            scene = _unmodified(base, modifiers.options, radius)
-            return replace(scene, name=f"{scene.name}{MARK}{modifiers.text}")
+            return _modified(base, parse_modifiers(text, name_or_path), inflate)
     return _unmodified(name_or_path, MapOptions(), inflate)
+
+
+def _modified(base: str, modifiers: Modifiers, inflate: float | None) -> Scene:
+    """A scene read, stopped, moved, grown and its ends put right, in this order."""
+    said = modifiers.radius if inflate is None else inflate
+    radius = _stated_radius(base) if said is None else said
+    # Of an end, at a time or moved, is said in the end whether it is free.
+    keep = modifiers.snap or modifiers.at is not None
+    grown_last = modifiers.moves or modifiers.at is not None
+    scene = _unmodified(base, modifiers.options, 0.0 if grown_last else radius, keep)
+    name = f"{scene.name}{MARK}{modifiers.text}"
+    if modifiers.at is not None:
+        scene = frozen(scene, modifiers.at, inflate=0.0 if modifiers.moves else radius)
+    if modifiers.moves:
+        scene = modified(scene, modifiers, inflate=radius)
+    return with_snapped_ends(scene, name) if modifiers.snap else renamed(scene, name)
 
 
 def _stated_radius(name_or_path: str) -> float:
@@ -209,7 +232,12 @@ def _stated_radius(name_or_path: str) -> float:
     return stated_radius(Path(name_or_path)) if is_scene_file else 0.0
 
 
-def _unmodified(name_or_path: str | Path, options: MapOptions, inflate: float | None) -> Scene:
+def _unmodified(
+    name_or_path: str | Path,
+    options: MapOptions,
+    inflate: float | None,
+    keep_blocked: bool = False,
+) -> Scene:
     if _is_path(name_or_path):
         path = Path(name_or_path)
         if path.suffix.lower() in FORMATS:
@@ -219,7 +247,7 @@ def _unmodified(name_or_path: str | Path, options: MapOptions, inflate: float | 
         if path.suffix and path.suffix.lower() not in SUFFIXES and not _looks_like_json(path):
             raise SceneError(f"{path}: {_no_format(path)}")
         _refuse(options, path.name)
-        return read_scene(path, inflate=inflate)
+        return read_scene(path, inflate=inflate, keep_blocked=keep_blocked)
     name = str(name_or_path)
     _refuse(options, name)
     if _is_generated(name):

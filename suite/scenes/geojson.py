@@ -76,7 +76,7 @@ _READ = ("optimum", "world", "gates", "radius", "grown_by")
 """Properties of the collection that are read, and may be null for being left out."""
 
 
-def read_scene(path: Path, *, inflate: float | None = None) -> Scene:
+def read_scene(path: Path, *, inflate: float | None = None, keep_blocked: bool = False) -> Scene:
     """Read a scene file.
 
     Parameters
@@ -86,6 +86,8 @@ def read_scene(path: Path, *, inflate: float | None = None) -> Scene:
     inflate : float, optional
         Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`. Default: the one
         that the file states, or none.
+    keep_blocked : bool
+        Keep queries whose ends are not free; see there.
 
     Returns
     -------
@@ -144,7 +146,7 @@ def read_scene(path: Path, *, inflate: float | None = None) -> Scene:
         path=path,
         inflate=radius if inflate is None else inflate,
         strata=strata,
-        keep_blocked=may_be_blocked,
+        keep_blocked=keep_blocked or may_be_blocked,
         grown_by=grown_by,
     )
 

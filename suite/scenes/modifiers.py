@@ -14,8 +14,12 @@ the ``@`` stand, in any order and each at most once:
     for each scene. A planner that finds good paths only where walls lie well for it is found out
     by twins.
 
+``at=T``
+    Seconds: a dynamic scene as it is then, standing still.
 ``radius=R``
     Of the robot, metres: the obstacles grow by it, after all else, and the workspace shrinks.
+``snap=yes``
+    Starts and goals that are not free are moved to the nearest place that is.
 
 And of maps alone, how they are read, see :class:`suite.scenes.maps.options.MapOptions`:
 ``unknown=free`` or ``unknown=occupied``, ``resolution=METRES`` of a pixel, ``threshold=SHARE``,
@@ -46,7 +50,7 @@ SUFFIXES = (".geojson", ".json")
 PATHS = (*SUFFIXES, *MAP_SUFFIXES)
 """Suffixes by which a name is told from a path."""
 MARK = "@"
-KEYS = ("turn", "shift", "scale", "twin", "radius", *OPTIONS)
+KEYS = ("turn", "shift", "scale", "twin", "at", "radius", "snap", *OPTIONS)
 FURTHEST = 1.0
 """Metres by which a twin is shifted along each axis, at the most."""
 
@@ -61,7 +65,9 @@ class Modifiers:
     turn : degrees, counter-clockwise.
     shift : (dx, dy), metres.
     scale : factor on lengths, above 0.
+    at : seconds, at which a dynamic scene is to stand still; None: it goes on.
     radius : of the robot, metres; None if nothing is said of it.
+    snap : whether ends that are not free are moved to free space.
     options : how the map is read.
     """
 
@@ -69,7 +75,9 @@ class Modifiers:
     turn: float = 0.0
     shift: tuple[float, float] = (0.0, 0.0)
     scale: float = 1.0
+    at: float | None = None
     radius: float | None = None
+    snap: bool = False
     options: MapOptions = field(default_factory=MapOptions)
 
     @property
@@ -100,27 +108,6 @@ def split_modifiers(name: str) -> tuple[str, str]:
             f"Write it like zigzag{MARK}turn=17, or leave the '{MARK}' out."
         )
     return base, text
-
-
-def with_modifiers(name: str, values: Mapping[str, object]) -> str:
-    """A name with more modifiers behind it; those of no value are left out.
-
-    Examples
-    --------
-    >>> with_modifiers("zigzag", {"radius": 0.2}), with_modifiers("zigzag@turn=17", {"scale": 2})
-    ('zigzag@radius=0.2', 'zigzag@turn=17,scale=2')
-    >>> with_modifiers("zigzag", {"radius": None})
-    'zigzag'
-    """
-    said = {key: _briefly(value) for key, value in values.items() if value is not None}
-    text = ",".join(f"{key}={value}" for key, value in said.items())
-    mark = "," if split_modifiers(name)[1] else MARK
-    return f"{name}{mark}{text}" if text else name
-
-
-def _briefly(value: object) -> str:
-    """A value as people write it: options are parsed to floats, and 1.0 is written 1."""
-    return str(int(value)) if isinstance(value, float) and value.is_integer() else str(value)
 
 
 def parse_modifiers(text: str, where: str) -> Modifiers:
@@ -161,9 +148,64 @@ def parse_modifiers(text: str, where: str) -> Modifiers:
         turn,
         shift,
         scale,
+        _not_negative(pairs["at"], "at", where) if "at" in pairs else None,
         _not_negative(pairs["radius"], "radius", where) if "radius" in pairs else None,
+        "snap" in pairs and _yes(pairs["snap"], "snap", where),
         _options({key: value for key, value in pairs.items() if key in OPTIONS}, where),
     )
+
+
+def with_modifiers(
+    name: str,
+    *,
+    radius: float | None = None,
+    at: float | None = None,
+    snap: bool = False,
+    scale: float | None = None,
+    options: MapOptions | None = None,
+) -> str:
+    """The name of a scene with more modifiers behind it.
+
+    Parameters
+    ----------
+    name : str
+        Of a scene, or a file, modified or not.
+    radius : float, optional
+        Of the robot, metres; 0 is none.
+    at : float, optional
+        Seconds, at which a dynamic scene is to stand still.
+    snap : bool
+        Whether ends that are not free are moved.
+    scale : float, optional
+        Factor on lengths.
+    options : MapOptions, optional
+        How the map is read.
+
+    Examples
+    --------
+    >>> with_modifiers("maze", radius=0.5), with_modifiers("maze@turn=3", radius=1.0, snap=True)
+    ('maze@radius=0.5', 'maze@turn=3,radius=1,snap=yes')
+    >>> with_modifiers("maze", radius=0.0), with_modifiers("a.svg", options=MapOptions(simplify=2.0))
+    ('maze', 'a.svg@simplify=2')
+    """
+    values = [(key, getattr(options, key, None)) for key in OPTIONS]
+    more = [f"{key}={_as_value(value)}" for key, value in values if value is not None]
+    more += [f"scale={_shortest(scale)}"] if scale is not None else []
+    more += [f"at={_shortest(at)}"] if at is not None else []
+    more += [f"radius={_shortest(radius)}"] if radius else []
+    more += ["snap=yes"] if snap else []
+    if not more:
+        return name
+    _, modifiers = split_modifiers(name)
+    return f"{name}{',' if modifiers else MARK}{','.join(more)}"
+
+
+def _as_value(value: object) -> str:
+    return _shortest(value) if isinstance(value, float) else str(value)
+
+
+def _shortest(number: float) -> str:
+    return np.format_float_positional(number, trim="-")
 
 
 def _pairs(text: str, where: str) -> Mapping[str, str]:
@@ -186,7 +228,9 @@ _EXAMPLES = {
     "shift": "shift=0.37 or shift=0.37:-0.21, in metres",
     "scale": "scale=1.0137, above 0",
     "twin": "twin=3, a whole number of 0 or more",
+    "at": "at=2.5, in seconds, of 0 or more",
     "radius": "radius=0.2, in metres, of 0 or more",
+    "snap": "snap=yes, or leave it out",
     "unknown": "unknown=occupied or unknown=free",
     "resolution": "resolution=0.05, metres of a pixel, above 0",
     "threshold": "threshold=0.65, the share of black from which a pixel is occupied, above 0",
@@ -225,6 +269,12 @@ def _above_zero(value: str, key: str, where: str) -> float:
     if number <= 0.0:
         raise SceneError(f"{where}: {key} is '{value}'. Write {_EXAMPLES[key]}.")
     return number
+
+
+def _yes(value: str, key: str, where: str) -> bool:
+    if value != "yes":
+        raise SceneError(f"{where}: {key} is '{value}'. Write {_EXAMPLES[key]}.")
+    return True
 
 
 def _options(given: Mapping[str, str], where: str) -> MapOptions:

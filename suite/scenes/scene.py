@@ -20,7 +20,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 from shapely.affinity import translate
-from shapely.geometry import Polygon
+from shapely.geometry import MultiPolygon, Polygon
 
 from suite.errors import SceneError
 from suite.geometry.arrangement import Arrangement, arrange
@@ -30,6 +30,7 @@ from suite.geometry.growth import grown, shrunk
 from suite.geometry.kernels import PARTS, ObstacleArrays
 from suite.geometry.tolerances import LARGEST
 from suite.scenes.dynamics import Dynamics, as_text
+from suite.scenes.free_space import free_regions, nearest_free
 from suite.scenes.polygons import as_polygon, check_polygon, check_width
 
 DEFAULT_QUERY = "main"
@@ -59,6 +60,7 @@ class Query:
     blocked : why it can't be asked: an end that is not in free space; None if both are. No planner
         is run on it.
     stratum : the part of a set of queries that it belongs to, of a similar difficulty; or None.
+    moved : metres by which start and goal were moved to free space.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Query:
     goal: NDArray[np.float64]
     blocked: str | None = None
     stratum: str | None = None
+    moved: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,6 +103,7 @@ class Scene:
     properties : read-only mapping, what the scene file says about itself.
     path : the file that the scene came from, or None.
     radius : of the robot that the obstacles were grown by, metres.
+    snaps : whether ends of queries that are not free are moved to the nearest place that is.
     """
 
     name: str
@@ -109,10 +113,11 @@ class Scene:
     properties: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     path: Path | None = None
     radius: float = 0.0
+    snaps: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
         """All but what is made of it: arrays would come back writable, another type to numba."""
-        made = ("arrangement", "at_first")
+        made = ("arrangement", "at_first", "regions")
         state = {k: v for k, v in self.__dict__.items() if k not in made}
         return state | {"properties": dict(self.properties)}
 
@@ -140,6 +145,11 @@ class Scene:
     def at_first(self) -> "Scene":
         """The static scene that it is at time 0: itself, if it is static."""
         return scene_at(self, 0.0) if self.is_dynamic else self
+
+    @cached_property
+    def regions(self) -> MultiPolygon:
+        """The parts of free space: between two of them there is no path."""
+        return free_regions(self.arrangement.solid)
 
     @property
     def arrays(self) -> ObstacleArrays:
@@ -357,6 +367,8 @@ def _normalise(
 ) -> tuple[Polygon, list[Obstacle]]:
     """Make holes of the workspace obstacles, grow by the robot, and cut at the workspace."""
     coordinates = coordinates_of(workspace.bounds)
+    # What is grown is rounded to the grid twice: here, and in the arrangement.
+    reach = inflate + 2.0 * coordinates.grid
     room = Polygon(workspace.exterior)
     holes = [
         Obstacle(f"hole {i} of the workspace", Polygon(h))
@@ -364,7 +376,7 @@ def _normalise(
     ]
     if inflate > 0.0:
         left = shapely.transform(
-            shrunk(shapely.transform(room, coordinates.local), inflate, coordinates.grid),
+            shrunk(shapely.transform(room, coordinates.local), reach, coordinates.grid),
             coordinates.world,
         )
         if not isinstance(left, Polygon) or left.is_empty:
@@ -373,15 +385,15 @@ def _normalise(
             )
         room = left
     # A vertex computed on a slanted border lies 1e-16 beside it: that does not stick out.
-    reach = shapely.transform(room, coordinates.local).buffer(coordinates.grid, join_style="mitre")
-    shapely.prepare(reach)
+    within = shapely.transform(room, coordinates.local).buffer(coordinates.grid, join_style="mitre")
+    shapely.prepare(within)
     kept: list[Obstacle] = []
     for obstacle in (*obstacles, *holes):
         local, polygon = shapely.transform(obstacle.polygon, coordinates.local), obstacle.polygon
         if inflate > 0.0:
-            local = grown(local, inflate, coordinates.grid)
+            local = grown(local, reach, coordinates.grid)
             polygon = shapely.transform(local, coordinates.world)
-        if obstacle.moves or reach.covers(local):
+        if obstacle.moves or within.covers(local):
             kept.append(Obstacle(obstacle.name, polygon, obstacle.dynamics))
             continue
         pieces = _inside(room, polygon, True, coordinates)
@@ -460,6 +472,8 @@ def _asked(where: str, scene: Scene, query: Query) -> Query:
     What comes upon an end later is what dynamic scenes are for: a hit, or a goal to wait for.
     """
     now = scene.at_first
+    if scene.snaps:
+        query = _moved_to_free_space(now, query)
     ends = (("start", query.start), ("goal", query.goal))
     found = (_not_free(now, point) for _, point in ends)
     whys = [
@@ -468,6 +482,49 @@ def _asked(where: str, scene: Scene, query: Query) -> Query:
         if why is not None
     ]
     return replace(query, blocked=whys[0] if whys else None)
+
+
+def _moved_to_free_space(scene: Scene, query: Query) -> Query:
+    """A query whose ends are free, each where it was, or in the nearest place that is."""
+    ends = [
+        point
+        if _not_free(scene, point) is None
+        else nearest_free(point, scene.regions, scene.arrangement.solid, scene.coordinates)
+        for point in (query.start, query.goal)
+    ]
+    by = [
+        float(np.hypot(*(new - old)))
+        for new, old in zip(ends, (query.start, query.goal), strict=True)
+    ]
+    return replace(query, start=ends[0], goal=ends[1], moved=(by[0], by[1]))
+
+
+def with_snapped_ends(scene: Scene, name: str) -> Scene:
+    """The same scene of another name, in which ends that are not free are moved to where it is.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its queries may be blocked.
+    name : str
+        Of the new one. Its queries keep their names, and say by how much they were moved.
+    """
+    snapping = _with_same_geometry(scene, name=name, snaps=True)
+    asked = tuple(_asked(name, snapping, query) for query in scene.queries)
+    return _with_same_geometry(snapping, queries=asked)
+
+
+def renamed(scene: Scene, name: str) -> Scene:
+    """The same scene of another name, with all that was computed of it."""
+    return _with_same_geometry(scene, name=name)
+
+
+def _with_same_geometry(scene: Scene, **changes: Any) -> Scene:
+    """A copy that keeps the arrangement, which took its time."""
+    copy = replace(scene, **changes)
+    kept = ("arrangement", "regions", "hash", "coordinates")
+    copy.__dict__.update({key: scene.__dict__[key] for key in kept if key in scene.__dict__})
+    return copy
 
 
 def _not_free(scene: Scene, point: NDArray[np.float64]) -> str | None:

@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,7 @@ class World:
     cold: bool = False
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Cell:
     """One run that is wanted: a query of a scene, a planner variant, a budget and a seed.
 
@@ -47,6 +48,7 @@ class Cell:
     seed : int, 0 or more.
     world : of a run that is simulated; None if the scene stands still and is planned in once.
     position : place in its matrix; tables keep that order. The outcome does not depend on it.
+    blocked : why the query can't be asked, if its matrix knows: it is refused and never run.
     """
 
     scene: str
@@ -62,6 +64,7 @@ class Cell:
     seed: int
     world: World | None = None
     position: int = 0
+    blocked: str | None = None
 
     @property
     def label(self) -> str:
@@ -102,7 +105,7 @@ class Cell:
         # stay what they are.
         return data if budget.cpu_s is None else data | {"cpu_s": float(budget.cpu_s)}
 
-    @property
+    @cached_property
     def key(self) -> str:
         """Hash of everything that the outcome depends on: the row's identity in a store.
 
