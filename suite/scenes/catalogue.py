@@ -250,6 +250,8 @@ def _unmodified(
         return read_scene(path, inflate=inflate, keep_blocked=keep_blocked)
     name = str(name_or_path)
     _refuse(options, name)
+    if split_modifiers(name)[1]:
+        return load_scene(name, inflate=inflate or None)
     if _is_generated(name):
         return _inflated(_generated(name), inflate or 0.0)
     return read_scene(scene_file(name), inflate=inflate)

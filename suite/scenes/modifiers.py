@@ -185,8 +185,8 @@ def with_modifiers(
     --------
     >>> with_modifiers("maze", radius=0.5), with_modifiers("maze@turn=3", radius=1.0, snap=True)
     ('maze@radius=0.5', 'maze@turn=3,radius=1,snap=yes')
-    >>> with_modifiers("maze", radius=0.0), with_modifiers("a.svg", options=MapOptions(simplify=2.0))
-    ('maze', 'a.svg@simplify=2')
+    >>> with_modifiers("maze", radius=0.0), with_modifiers("a.svg", scale=0.5)
+    ('maze', 'a.svg@scale=0.5')
     """
     values = [(key, getattr(options, key, None)) for key in OPTIONS]
     more = [f"{key}={_as_value(value)}" for key, value in values if value is not None]

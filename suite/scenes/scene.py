@@ -338,7 +338,8 @@ def make_scene(
 
 def _still_true(properties: Mapping[str, Any], inflate: float) -> dict[str, Any]:
     """The properties without what holds for a point only, if the robot is none."""
-    return {k: v for k, v in properties.items() if inflate == 0.0 or k != "optimum"}
+    of_a_point = ("optimum", "published", "published_as")
+    return {k: v for k, v in properties.items() if inflate == 0.0 or k not in of_a_point}
 
 
 def _check_unique(where: str, what: str, names: Sequence[str]) -> None:
