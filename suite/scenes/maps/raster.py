@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
 from suite.errors import SceneError
+from suite.scenes.maps.text import one_line
 
 KINDS = ("PNG", "PPM", "BMP", "JPEG", "TIFF")
 """Of images, as Pillow names them; PPM has PGM in it."""
@@ -67,7 +68,7 @@ def read_raster(path: Path, where: str) -> Raster:
     except UnidentifiedImageError as error:
         raise SceneError(f"{where}: is no image. Give one of {', '.join(KINDS)}.") from error
     except Image.DecompressionBombError as error:
-        raise SceneError(f"{where}: {_too_large('of far more pixels')}") from error
+        raise SceneError(f"{where}: {_too_large('far too many pixels')}") from error
     except OSError as error:
         if error.errno is not None:
             raise SceneError(f"{where}: can't be read ({error.strerror}).") from error
@@ -78,9 +79,7 @@ def read_raster(path: Path, where: str) -> Raster:
 
 
 def _damaged(where: str, error: Exception) -> str:
-    words = " ".join(str(error).split())
-    said = "".join(c for c in words if c.isprintable())[:100]
-    return f"{where}: is damaged, or cut off ({said}). Save or copy it once more."
+    return f"{where}: is damaged, or cut off ({one_line(error)}). Save or copy it once more."
 
 
 def _check_size(image: Image.Image, where: str) -> None:
@@ -89,7 +88,7 @@ def _check_size(image: Image.Image, where: str) -> None:
 
 
 def _too_large(size: str) -> str:
-    return f"{size}, but at most {MOST_PIXELS:,} can be read. Make it smaller, or cut it in parts."
+    return f"has {size}: at most {MOST_PIXELS:,} can be read. Make it smaller, or cut it in parts."
 
 
 def _raster(image: Image.Image, where: str) -> Raster:

@@ -32,7 +32,7 @@ from suite.scenes.maps.drawing import Drawing
 from suite.scenes.maps.options import MapOptions, Unknown
 from suite.scenes.maps.pixels import drawing_of
 from suite.scenes.maps.raster import Raster, read_raster
-from suite.scenes.maps.text import finite
+from suite.scenes.maps.text import finite, one_line
 from suite.typed import MisfitError, shown, typed
 
 OCCUPIED, FREE, UNKNOWN = 100.0, 0.0, -1.0
@@ -83,7 +83,7 @@ def read_ros(path: Path, options: MapOptions) -> Drawing:
     """
     said = _read_yaml(path)
     image = path.parent / said.image
-    raster = read_raster(image, f"{path.name}, image {image.name[:80]}")
+    raster = read_raster(image, f"{path.name}, image {one_line(image.name)}")
     values = occupancy(raster, said)
     known = (values == OCCUPIED) | (values == FREE)
     occupied = values == OCCUPIED
@@ -139,10 +139,10 @@ def _read_yaml(path: Path) -> MapYaml:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = f", line {mark.line + 1}" if mark else ""
-        raise SceneError(f"{path.name}{line}: no YAML ({_words(error.problem)}).") from error
+        raise SceneError(f"{path.name}{line}: no YAML ({one_line(error.problem)}).") from error
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         # Of ValueError, what PyYAML lets out: no text, and dates and numbers that there are not.
-        raise SceneError(f"{path.name}: no YAML ({_words(error)}).") from error
+        raise SceneError(f"{path.name}: no YAML ({one_line(error)}).") from error
     if not isinstance(data, dict):
         raise SceneError(
             f"{path.name}: is {shown(data)}. Give the keys of a map of ROS's map_server: "
@@ -154,10 +154,6 @@ def _read_yaml(path: Path) -> MapYaml:
         raise SceneError(f"{path.name}: {error}") from error
     _check(path, said)
     return said
-
-
-def _words(problem: object) -> str:
-    return shown(str(problem)).strip("'\"")
 
 
 def _with_numbers(data: Mapping[Any, Any]) -> dict[str, Any]:

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from suite.errors import SceneError
 from suite.scenes.maps.drawing import Point
-from suite.scenes.maps.text import finite, read_lines
+from suite.scenes.maps.text import finite, one_line, read_lines
+from suite.typed import shown
 
 FIELDS = "bucket, map, width, height, start x, start y, goal x, goal y and length"
 
@@ -55,11 +56,18 @@ def map_of(path: Path, asked: tuple[Asked, ...]) -> Path:
     named = Path(said[0].replace("\\", "/"))
     places = (path.with_suffix(""), path.parent / named, path.parent / named.name)
     for place in places:
-        if "\0" not in str(place) and place.suffix and place.is_file():
+        if place.suffix and _is_file(place):
             return place
     raise SceneError(
-        f"{path.name}: its map, {named.name[:80]}, is not beside it. Put it into the same folder."
+        f"{path.name}: its map, {one_line(named.name)}, is not beside it. Put it into its folder."
     )
+
+
+def _is_file(place: Path) -> bool:
+    try:
+        return place.is_file()
+    except (OSError, ValueError):  # a name that is too long, or that none can have
+        return False
 
 
 def read_scen(path: Path) -> tuple[Asked, ...]:
@@ -87,7 +95,7 @@ def _asked(path: Path, line: int, row: list[str], number: int) -> Asked:
             f"{path.name}, line {line}: no query. Give {FIELDS}, the last seven in numbers."
         )
     if not re.fullmatch("[0-9]{1,9}", bucket):
-        raise SceneError(f"{path.name}, line {line}: bucket is '{bucket[:40]}'. Give a number.")
+        raise SceneError(f"{path.name}, line {line}: bucket is {shown(bucket)}. Give a number.")
     width, height, x, y, to_x, to_y, length = told
     return Asked(
         name=f"{int(bucket)}-{number}",

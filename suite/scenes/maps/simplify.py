@@ -74,25 +74,29 @@ class _Outline:
 
     def without_pockets(self) -> Points:
         n = len(self.xy)
-        before, after = [*range(-1, n - 1)], [*range(1, n + 1)]
+        before, after = list(range(-1, n - 1)), list(range(1, n + 1))
         before[0], after[-1] = n - 1, 0
-        heap = [(depth, i) for i in range(n) if (depth := self._depth(i - 1, i, i + 1)) is not None]
-        heapq.heapify(heap)
-        left = n
         gone = [False] * n
+        left = n
+        heap: list[tuple[float, int, int, int]] = []
+
+        def offer(i: int) -> None:
+            depth = self._depth(before[i], i, after[i])
+            if depth is not None:
+                heapq.heappush(heap, (depth, before[i], i, after[i]))
+
+        for i in range(n):
+            offer(i)
         while heap and left > LEAST:
-            depth, i = heapq.heappop(heap)
-            a, b = before[i], after[i]
-            # A neighbour has gone since: the chord of today has an entry of its own.
-            if gone[i] or depth != self._depth(a, i, b) or not self._is_empty(a, i, b):
+            _, a, i, b = heapq.heappop(heap)
+            # Where a neighbour has gone since, the chord of today has an entry of its own.
+            if gone[i] or (a, b) != (before[i], after[i]) or not self._is_empty(a, i, b):
                 continue
             gone[i] = True
             left -= 1
             after[a], before[b] = b, a
-            for j in (a, b):
-                again = self._depth(before[j], j, after[j])
-                if again is not None:
-                    heapq.heappush(heap, (again, j))
+            offer(a)
+            offer(b)
         return self.xy[[i for i in range(n) if not gone[i]]]
 
     def _depth(self, a: int, i: int, b: int) -> float | None:
@@ -102,11 +106,11 @@ class _Outline:
         of the chord lies from the chord.
         """
         n = len(self.xy)
-        start, end, corner = self.xy[a % n], self.xy[b % n], self.xy[i]
-        if _cross(corner - start, end - start) > 0.0:
+        start, end = self.xy[a], self.xy[b]
+        chord = end - start
+        if _cross(self.xy[i] - start, chord) > 0.0:
             return None
         between = self.xy[np.arange(a + 1, b + n * (b <= a)) % n] - start
-        chord = end - start
         length = float(np.hypot(*chord))
         along = between @ chord / length
         left = (chord[0] * between[:, 1] - chord[1] * between[:, 0]) / length

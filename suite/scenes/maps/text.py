@@ -35,3 +35,15 @@ def finite(text: str) -> float | None:
     except ValueError:
         return None
     return number if math.isfinite(number) else None
+
+
+def one_line(words: object, longest: int = 100) -> str:
+    r"""What a library or a file says, as a part of an error: on one line, printable, and not long.
+
+    Examples
+    --------
+    >>> one_line(ValueError("bad\n  header\x00"))
+    'bad header'
+    """
+    text = "".join(c for c in " ".join(str(words).split()) if c.isprintable())
+    return text if len(text) <= longest else f"{text[: longest - 3]}..."

@@ -86,8 +86,8 @@ def test_thirty_two_bits_are_refused(tmp_path):
         (b"not an image", "is no image"),
         (b"P5\n10 8\n255\n" + bytes(30), "is damaged, or cut off"),
         (b"P5\n0 8\n255\n", "is no image"),
-        (b"P5\n100000 100000\n255\n", "pixels, but at most 50,000,000 can be read"),
-        (b"P5\n8000 8000\n255\n", "8000 x 8000 pixels, but at most 50,000,000 can be read"),
+        (b"P5\n100000 100000\n255\n", "has far too many pixels: at most 50,000,000"),
+        (b"P5\n8000 8000\n255\n", "8000 x 8000 pixels: at most 50,000,000 can be read"),
     ],
 )
 def test_an_error_says_what_is_wrong_with_the_file(tmp_path, content, words):
@@ -101,5 +101,5 @@ def test_an_error_says_what_is_wrong_with_the_file(tmp_path, content, words):
 def test_an_image_of_more_pixels_than_can_be_read_is_refused_unread(tmp_path, monkeypatch):
     file = write_image(tmp_path / "corner.png", CORNER)
     monkeypatch.setattr(raster, "MOST_PIXELS", 23)
-    with pytest.raises(SceneError, match=r"6 x 4 pixels, but at most 23 can be read"):
+    with pytest.raises(SceneError, match=r"6 x 4 pixels: at most 23 can be read"):
         load_scene(str(file))

@@ -108,6 +108,8 @@ def test_an_error_of_queries_names_their_file(tmp_path, name, content, words):
     ("content", "words"),
     [
         (scen_text("mine.map"), "its map, mine.map, is not beside it"),
+        (scen_text("m" * 999 + ".map"), "mmm..., is not beside it"),
+        (scen_text("m\0.map"), "its map, m.map, is not beside it"),
         (scen_text().replace("cave.map", "mine.map", 1), "its queries are of 2 maps"),
         (scen_text("level.mesh"), "is of level.mesh, which is no grid. Name that"),
         ("version 1\n", "has no queries, and so names no map"),
