@@ -4,6 +4,7 @@ import pytest
 import shapely
 
 from suite.errors import SceneError
+from suite.scenes.catalogue import load_scene
 from suite.scenes.maps.options import MapOptions
 from suite.scenes.maps.wkt import read_wkt
 from suite.scenes.scene import SceneWarning
@@ -77,3 +78,12 @@ def test_an_outline_is_simplified_on_request(read):
 def test_a_text_that_can_not_be_read_says_where_and_why(read, text, message):
     with pytest.raises(SceneError, match=message):
         read(text)
+
+
+def test_minus_zero_is_zero(tmp_path):
+    file = tmp_path / "hall.wkt"
+    hashes = set()
+    for text in (SQUARE, SQUARE.replace("(0 0,", "(-0 0,")):
+        file.write_text(text)
+        hashes.add(load_scene(file).hash)
+    assert len(hashes) == 1
