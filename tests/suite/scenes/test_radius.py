@@ -9,9 +9,13 @@ from shapely.affinity import rotate, translate
 from shapely.geometry import Polygon
 
 from suite.referee.path import Referee, judge
+from suite.scenes.catalogue import load_scene
 from suite.scenes.exact import shortest_path
+from suite.scenes.maps.formats import FORMATS
+from suite.scenes.samples import random_queries
 from suite.scenes.scene import Scene, make_scene
 from tests.strategies import SIDE, lattice_boxes, lattice_polygons
+from tests.suite.scenes.real_maps import FOLDER, MISSING, REASON
 
 ROOM = shapely.box(0, 0, SIDE, SIDE)
 PLACES = np.stack(np.meshgrid(*[np.arange(SIDE) + 0.5] * 2), axis=-1).reshape(-1, 2)
@@ -114,3 +118,14 @@ def test_no_path_that_is_accepted_comes_nearer_whoever_found_it(drawn, seed):
         path = np.vstack([start, middle, goal])
         if referee.judge(scene.query(), path).valid:
             assert clearance(scene, path, ROOM, polygons) >= radius - 1e-9
+
+
+@pytest.mark.skipif(MISSING or ".yaml" not in FORMATS, reason=REASON)
+def test_in_a_scanned_room_no_shortest_path_comes_nearer_to_a_cell_that_is_occupied():
+    radius, name = 0.2, str(FOLDER / "tb3_sandbox.yaml")
+    drawn, scene = load_scene(name), load_scene(f"{name}@radius={radius}")
+    occupied = [obstacle.polygon for obstacle in drawn.obstacles]
+    for query in random_queries(scene, 25, seed=1, min_distance=1.0):
+        path = shortest_path(scene, query).path
+        assert path is not None
+        assert clearance(scene, path, drawn.workspace, occupied) >= radius - 1e-9
