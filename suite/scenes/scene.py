@@ -368,8 +368,6 @@ def _normalise(
 ) -> tuple[Polygon, list[Obstacle]]:
     """Make holes of the workspace obstacles, grow by the robot, and cut at the workspace."""
     coordinates = coordinates_of(workspace.bounds)
-    # What is grown is rounded to the grid twice: here, and in the arrangement.
-    reach = inflate + 2.0 * coordinates.grid
     room = Polygon(workspace.exterior)
     holes = [
         Obstacle(f"hole {i} of the workspace", Polygon(h))
@@ -377,7 +375,7 @@ def _normalise(
     ]
     if inflate > 0.0:
         left = shapely.transform(
-            shrunk(shapely.transform(room, coordinates.local), reach, coordinates.grid),
+            shrunk(shapely.transform(room, coordinates.local), inflate, coordinates.grid),
             coordinates.world,
         )
         if not isinstance(left, Polygon) or left.is_empty:
@@ -392,7 +390,7 @@ def _normalise(
     for obstacle in (*obstacles, *holes):
         local, polygon = shapely.transform(obstacle.polygon, coordinates.local), obstacle.polygon
         if inflate > 0.0:
-            local = grown(local, reach, coordinates.grid)
+            local = grown(local, inflate, coordinates.grid)
             polygon = shapely.transform(local, coordinates.world)
         if obstacle.moves or within.covers(local):
             kept.append(Obstacle(obstacle.name, polygon, obstacle.dynamics))
