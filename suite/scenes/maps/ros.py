@@ -1,20 +1,25 @@
 """Occupancy grids of ROS: a yaml file, as map_server reads it, and the image that it names.
 
-After nav2_map_server's map_io.cpp (Humble), whose grid has 100 for occupied, 0 for free, and else
--1 for unknown or, in the modes ``scale`` and ``raw``, what lies between. With p the darkness of a
-pixel, 1 without the mean of its red, green and blue (the mean itself, if ``negate``):
+After nav2_map_server's map_io.cpp, as it is since pull request 5071 of navigation2 (2025). Its grid
+has 100 for occupied, 0 for free, and else -1 for unknown or, in the modes ``scale`` and ``raw``,
+what lies between. With p the darkness of a pixel, 1 without its brightness (the brightness itself,
+if ``negate``), brightness being the mean of red, green and blue:
 
 ``trinary``
-    Occupied where p > occupied_thresh, free where p < free_thresh, else unknown. Opacity, of an
-    image that has any, is averaged in as a fourth colour.
+    Occupied where p >= occupied_thresh, free where p <= free_thresh, else unknown, and so is all
+    that is not opaque.
 ``scale``
-    The same, but between the thresholds 1 to 99 in proportion, rounded; unknown is what is not
-    opaque.
+    The same, but between the thresholds 1 to 99 in proportion, rounded.
 ``raw``
     The brightness itself, of 255; above 100 it is unknown. It heeds neither ``negate`` nor
-    thresholds.
+    thresholds nor opacity.
 
 Here, all that is neither occupied nor free is unknown: nobody has said that a robot can go there.
+
+Up to ROS 2 Jazzy a darkness of exactly a threshold was unknown, and opacity was averaged in as a
+fourth colour in ``trinary``, by which the unknown of an opaque image with an alpha channel became
+free (issue 4233 there): nobody wants that of a map. Brightness was the mean then, as it is here;
+map_server has Magick weigh colours since, which is the same in grey.
 """
 
 import math
@@ -60,7 +65,7 @@ class MapYaml(msgspec.Struct, frozen=True, forbid_unknown_fields=False):
     resolution : metres of a pixel.
     origin : x, y of the lower left pixel's lower left corner, metres, and yaw about it, radians.
     negate : whether bright pixels are the occupied ones.
-    occupied_thresh, free_thresh : darkness above which a pixel is occupied, below which it is free.
+    occupied_thresh, free_thresh : darkness from which on a pixel is occupied, up to which free.
     mode : how darkness becomes occupancy.
     """
 
@@ -112,23 +117,18 @@ def read_ros(path: Path, options: MapOptions) -> Drawing:
 
 def occupancy(raster: Raster, said: MapYaml) -> NDArray[np.float64]:
     """The values of the grid that map_server would publish, the upper row first."""
-    shade, opacity = raster.brightness, raster.opacity
     if said.mode == "raw":
-        value = np.rint(shade * 255.0)
-        return np.where(value <= OCCUPIED, value, UNKNOWN)
-    if said.mode == "trinary" and opacity is not None:
-        shade = (3.0 * shade + opacity) / 4.0
-    dark = shade if said.negate else 1.0 - shade
+        level = np.rint(raster.brightness * 255.0)
+        return np.where(level <= OCCUPIED, level, UNKNOWN)
+    dark = raster.brightness if said.negate else raster.darkness
     between = np.full_like(dark, UNKNOWN)
     if said.mode == "scale":
         share = (dark - said.free_thresh) / (said.occupied_thresh - said.free_thresh)
-        between = np.rint(share * OCCUPIED)
+        between = np.floor(share * OCCUPIED + 0.5)
     value = np.select(
-        [dark > said.occupied_thresh, dark < said.free_thresh], [OCCUPIED, FREE], between
+        [dark >= said.occupied_thresh, dark <= said.free_thresh], [OCCUPIED, FREE], between
     )
-    if said.mode == "scale" and opacity is not None:
-        value[opacity < 1.0] = UNKNOWN
-    return value
+    return value if raster.opacity is None else np.where(raster.opacity < 1.0, UNKNOWN, value)
 
 
 def _read_yaml(path: Path) -> MapYaml:

@@ -35,9 +35,9 @@ def test_trinary_is_occupied_above_one_threshold_free_below_the_other_and_else_u
     assert values_of(GREYS) == [100, 100, -1, -1, -1, 0, 0]
 
 
-def test_a_darkness_of_exactly_a_threshold_is_unknown():
-    greys = np.array([[0, 51, 255]])
-    assert values_of(greys, occupied_thresh=0.8, free_thresh=0.0) == [100, -1, -1]
+def test_a_darkness_of_exactly_a_threshold_is_occupied_or_free():
+    greys = np.array([[51, 52, 203, 204]])
+    assert values_of(greys, occupied_thresh=0.8, free_thresh=0.2) == [100, -1, -1, 0]
 
 
 def test_negate_takes_bright_for_occupied():
@@ -45,18 +45,23 @@ def test_negate_takes_bright_for_occupied():
     assert values_of(GREYS, negate=True) == values_of(GREYS, negate=1)
 
 
-def test_opacity_is_a_fourth_colour_in_trinary():
-    # Opaque black is 3/4 dark, transparent black wholly; transparent white is 1/4 dark.
-    assert values_of([[0, 0, 255, 255]], [[255, 0, 0, 255]]) == [100, 100, -1, 0]
-    assert values_of([[0, 0]], [[255, 0]], occupied_thresh=0.8) == [-1, 100]
+def test_what_is_not_opaque_is_unknown():
+    opacity = [[255, 254, 0, 255]]
+    assert values_of([[0, 0, 255, 255]], opacity) == [100, -1, -1, 0]
+    assert values_of([[0, 0, 255, 255]], opacity, mode="scale") == [100, -1, -1, 0]
+    assert values_of([[0, 1, 99, 255]], opacity, mode="raw") == [0, 1, 99, -1]
 
 
-def test_scale_fills_in_what_lies_between_and_takes_what_is_not_opaque_for_unknown():
+def test_an_alpha_channel_that_is_opaque_changes_nothing(tmp_path):
+    opaque = np.dstack([ROOM, ROOM, ROOM, np.full_like(ROOM, 255)])
+    scene = load_scene(str(write_ros(tmp_path, opaque, image="room.png")))
+    assert scene.hash == load_scene(str(write_ros(tmp_path))).hash
+
+
+def test_scale_fills_in_what_lies_between():
     greys = [[0, 51, 102, 153, 204, 255]]
     thresholds = {"mode": "scale", "occupied_thresh": 0.8, "free_thresh": 0.2}
     assert values_of(greys, **thresholds) == [100, 100, 67, 33, 0, 0]
-    opacity = [[255, 254, 255, 255, 255, 0]]
-    assert values_of(greys, opacity, **thresholds) == [100, -1, 67, 33, 0, -1]
 
 
 def test_raw_takes_the_grey_itself_up_to_a_hundred():
