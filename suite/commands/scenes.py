@@ -141,9 +141,7 @@ def import_map(
     scale: Annotated[
         float | None, typer.Option(metavar="F", help="Metres of a unit of the map.")
     ] = None,
-    radius: Annotated[
-        float | None, typer.Option(metavar="R", help="The robot's, metres: obstacles grow by it.")
-    ] = None,
+    radius: RadiusOption = None,
     style: TextStyle = TextFormat.TEXT,
 ) -> None:
     """Read a map of another format, and write it as a scene file, with the queries beside it.

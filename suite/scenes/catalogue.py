@@ -235,18 +235,17 @@ def load_scene(name_or_path: str | Path, *, inflate: float | None = None) -> Sce
 
 def _modified(base: str, modifiers: Modifiers, inflate: float | None) -> Scene:
     """A scene read, stopped, moved, grown and its ends put right, in this order."""
-    radius = modifiers.radius if inflate is None else inflate
+    said = modifiers.radius if inflate is None else inflate
+    radius = _stated_radius(base) if said is None else said
     # Of an end, at a time or moved, is said in the end whether it is free.
     keep = modifiers.snap or modifiers.at is not None
     grown_last = modifiers.moves or modifiers.at is not None
-    if grown_last and radius is None:
-        radius = _stated_radius(base)
     scene = _unmodified(base, modifiers.options, 0.0 if grown_last else radius, keep)
     name = f"{scene.name}{MARK}{modifiers.text}"
     if modifiers.at is not None:
-        scene = frozen(scene, modifiers.at, inflate=0.0 if modifiers.moves else radius or 0.0)
+        scene = frozen(scene, modifiers.at, inflate=0.0 if modifiers.moves else radius)
     if modifiers.moves:
-        scene = modified(scene, modifiers, inflate=radius or 0.0)
+        scene = modified(scene, modifiers, inflate=radius)
     return with_snapped_ends(scene, name) if modifiers.snap else renamed(scene, name)
 
 
@@ -275,6 +274,8 @@ def _unmodified(
         return read_scene(path, inflate=inflate, keep_blocked=keep_blocked)
     name = str(name_or_path)
     _refuse(options, name)
+    if split_modifiers(name)[1]:
+        return load_scene(name, inflate=inflate or None)
     if _is_generated(name):
         return _inflated(_generated(name), inflate or 0.0)
     return read_scene(scene_file(name), inflate=inflate)

@@ -344,7 +344,8 @@ def make_scene(
 
 def _still_true(properties: Mapping[str, Any], inflate: float) -> dict[str, Any]:
     """The properties without what holds for a point only, if the robot is none."""
-    return {k: v for k, v in properties.items() if inflate == 0.0 or k != "optimum"}
+    of_a_point = ("optimum", "published", "published_as")
+    return {k: v for k, v in properties.items() if inflate == 0.0 or k not in of_a_point}
 
 
 def _check_unique(where: str, what: str, names: Sequence[str]) -> None:
@@ -373,8 +374,6 @@ def _normalise(
 ) -> tuple[Polygon, list[Obstacle]]:
     """Make holes of the workspace obstacles, grow by the robot, and cut at the workspace."""
     coordinates = coordinates_of(workspace.bounds)
-    # What is grown is rounded to the grid twice: here, and in the arrangement.
-    reach = inflate + 2.0 * coordinates.grid
     room = Polygon(workspace.exterior)
     holes = [
         Obstacle(f"hole {i} of the workspace", Polygon(h))
@@ -382,7 +381,7 @@ def _normalise(
     ]
     if inflate > 0.0:
         left = shapely.transform(
-            shrunk(shapely.transform(room, coordinates.local), reach, coordinates.grid),
+            shrunk(shapely.transform(room, coordinates.local), inflate, coordinates.grid),
             coordinates.world,
         )
         if not isinstance(left, Polygon) or left.is_empty:
@@ -397,7 +396,7 @@ def _normalise(
     for obstacle in (*obstacles, *holes):
         local, polygon = shapely.transform(obstacle.polygon, coordinates.local), obstacle.polygon
         if inflate > 0.0:
-            local = grown(local, reach, coordinates.grid)
+            local = grown(local, inflate, coordinates.grid)
             polygon = shapely.transform(local, coordinates.world)
         if obstacle.moves or within.covers(local):
             kept.append(Obstacle(obstacle.name, polygon, obstacle.dynamics))

@@ -188,7 +188,8 @@ def _moved_removal(removal: Removal | None, move: Similarity) -> Removal | None:
 
 
 def _moved_properties(scene: Scene, modifiers: Modifiers, move: Similarity) -> dict[str, Any]:
-    left_out = {"optimum"} if modifiers.scale == 1.0 else {"optimum", "paper_best"}
+    lengths = {"paper_best", "published", "published_as"}
+    left_out = {"optimum"} if modifiers.scale == 1.0 else {"optimum", *lengths}
     kept = {key: value for key, value in scene.properties.items() if key not in left_out}
     if "gates" in kept:
         kept["gates"] = {

@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-import shapely
-
 from suite.scenes.scene import Scene
 
 
@@ -33,6 +31,7 @@ def summary_of(scene: Scene) -> Summary:
 
     Examples
     --------
+    >>> import shapely
     >>> from suite.scenes.scene import make_scene
     >>> wall = shapely.box(4, 0, 5, 6)
     >>> found = summary_of(make_scene("two rooms", shapely.box(0, 0, 10, 6), [wall], {}))
@@ -40,10 +39,7 @@ def summary_of(scene: Scene) -> Summary:
     (2, 0.9)
     """
     xmin, ymin, xmax, ymax = scene.bounds
-    free = scene.workspace.difference(scene.at_first.arrangement.solid)
-    # Slivers of rounding along an outline are no regions.
-    grid = scene.coordinates.grid
-    rooms = [part for part in shapely.get_parts(free) if not part.buffer(-grid).is_empty]
+    free = scene.at_first.regions
     return Summary(
         len(scene.obstacles),
         scene.vertex_count,
@@ -52,7 +48,7 @@ def summary_of(scene: Scene) -> Summary:
         len(scene.queries),
         sum(query.blocked is not None for query in scene.queries),
         float(free.area / scene.workspace.area),
-        len(rooms),
+        len(free.geoms),
     )
 
 

@@ -17,6 +17,7 @@ from suite.scenes.maps.drawing import Drawing
 from suite.scenes.maps.options import MapOptions
 from suite.scenes.maps.polygons import obstacles_in_their_box
 from suite.scenes.maps.projection import DEGREES, check_projection, may_be_degrees
+from suite.scenes.maps.text import one_line
 
 
 def knows_no_roles(path: Path) -> bool:
@@ -65,6 +66,5 @@ def _geometry(path: Path, number: int, geometry: dict[str, Any]) -> BaseGeometry
         return shapely.from_geojson(json.dumps(geometry))
     except (shapely.errors.GEOSException, ValueError) as error:
         raise SceneError(
-            f"{path.name}, feature {number}: its geometry can't be read "
-            f"({' '.join(str(error).split())[:120]})."
+            f"{path.name}, feature {number}: its geometry can't be read ({one_line(error)})."
         ) from error

@@ -6,6 +6,9 @@ from pathlib import Path
 from pkgutil import resolve_name
 from typing import cast
 
+import shapely
+from shapely.geometry import Polygon
+
 from suite.errors import SceneError
 from suite.scenes.maps.drawing import Drawing
 from suite.scenes.maps.options import OPTIONS, MapOptions
@@ -96,8 +99,8 @@ def read_map(
     drawing = cast(Reader, resolve_name(form.reader))(path, options)
     return make_scene(
         path.stem,
-        drawing.workspace,
-        [Obstacle(f"obstacle {i}", polygon) for i, polygon in enumerate(drawing.obstacles, 1)],
+        _unsigned(drawing.workspace),
+        [Obstacle(f"obstacle {i}", _unsigned(p)) for i, p in enumerate(drawing.obstacles, 1)],
         drawing.queries,
         properties=drawing.properties,
         path=path,
@@ -105,3 +108,8 @@ def read_map(
         strata=drawing.strata,
         keep_blocked=True,
     )
+
+
+def _unsigned(polygon: Polygon) -> Polygon:
+    """The polygon with 0 for each -0, which is the same place, but not the same bytes of a hash."""
+    return shapely.transform(polygon, lambda xy: xy + 0.0)

@@ -39,6 +39,7 @@ from suite.scenes.maps.drawing import Drawing
 from suite.scenes.maps.fill import filled
 from suite.scenes.maps.options import MapOptions
 from suite.scenes.maps.polygons import drawing_of, solids
+from suite.scenes.maps.text import one_line
 from suite.scenes.scene import SceneWarning
 
 FLATNESS = 1e-4
@@ -136,9 +137,9 @@ def _root(path: Path) -> ElementTree.Element:
     except OSError as error:
         raise SceneError(f"{path.name}: can't be read ({error.strerror}).") from error
     except (ElementTree.ParseError, ValueError, LookupError) as error:  # an encoding unknown
-        raise SceneError(f"{path.name}: no XML ({error}).") from error
+        raise SceneError(f"{path.name}: no XML ({one_line(error)}).") from error
     if _tag(root) != "svg":
-        raise SceneError(f"{path.name}: its root is '{_tag(root)[:40]}', not 'svg'.")
+        raise SceneError(f"{path.name}: its root is {_tag(root)[:40]!r}, not 'svg'.")
     return root
 
 
@@ -188,7 +189,7 @@ def _shapes(path: Path, root: ElementTree.Element) -> list[Any]:
         raise SceneError(f"{path.name}: an element uses itself, or lies too deep.") from error
     # The library checks no attribute: one that is broken ends in whatever it meets first.
     except Exception as error:
-        raise SceneError(f"{path.name}: an attribute can't be read ({error}).") from error
+        raise SceneError(f"{path.name}: an attribute can't be read ({one_line(error)}).") from error
     left_out = Counter(
         type(e).__name__.lower() + "s"
         for e in elements
@@ -212,7 +213,7 @@ def _put_templates_away(path: Path, root: ElementTree.Element) -> None:
                 continue
             if _tag(child) == "symbol" and "viewBox" in child.attrib:
                 raise SceneError(
-                    f"{path.name}: the symbol '{child.get('id', '')[:40]}' has a viewBox, which is "
+                    f"{path.name}: the symbol {child.get('id', '')[:40]!r} has a viewBox, which is "
                     "not applied. Unlink its clones (Inkscape: Edit, Clone, Unlink)."
                 )
             child.tag = f"{NAMESPACE}g"
@@ -249,7 +250,9 @@ def _areas(path: Path, shape: Any, page: Page, floor: float) -> Iterator[tuple[B
         paints = _paint(shape.fill, shape), _paint(shape.stroke, shape)
         width = float(shape.stroke_width or 0.0)
     except Exception as error:  # as above
-        raise SceneError(f"{path.name}{_named(shape)}: can't be read ({error}).") from error
+        raise SceneError(
+            f"{path.name}{_named(shape)}: can't be read ({one_line(error)})."
+        ) from error
     if not all(np.abs(line.points @ linear.T + shift).max() <= LARGEST for line in lines):
         raise SceneError(f"{path.name}{_named(shape)}: lies too far off, beyond {LARGEST:g}.")
 
@@ -272,7 +275,7 @@ def _areas(path: Path, shape: Any, page: Page, floor: float) -> Iterator[tuple[B
 
 
 def _named(shape: Any) -> str:
-    return f", '{str(shape.id)[:40]}'" if shape.id else ""
+    return f", {str(shape.id)[:40]!r}" if shape.id else ""
 
 
 def _paint(colour: Any, shape: Any) -> tuple[float, float]:

@@ -5,7 +5,6 @@ nothing of them is taken for that. In a DXF, whose drawings are lines, a line th
 outline of an obstacle.
 """
 
-import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from suite.scenes.maps.drawing import Drawing
 from suite.scenes.maps.options import MapOptions
 from suite.scenes.maps.polygons import obstacles_in_their_box
 from suite.scenes.maps.projection import check_projection
+from suite.scenes.maps.text import one_line
 
 try:
     import pyogrio
@@ -46,13 +46,13 @@ def read_vector(path: Path, options: MapOptions) -> Drawing:
         )
     layer = _layer(path, options.layer)
     crs, shapes = _read(path, layer)
-    bounds = shapely.total_bounds([shape for shape in shapes if shape is not None]).tolist()
-    check_projection(path.name, crs, tuple(bounds))
     if path.suffix.lower() == OUTLINES:
         shapes = [_outlined(shape) for shape in shapes]
-    return obstacles_in_their_box(
+    drawing = obstacles_in_their_box(
         path, shapes, simplify=options.simplify, properties={"format": "GDAL", "layer": layer}
     )
+    check_projection(path.name, crs, drawing.workspace.bounds)
+    return drawing
 
 
 def _layer(path: Path, wanted: str | None) -> str:
@@ -87,7 +87,9 @@ def _read(path: Path, layer: str) -> tuple[str | None, list[BaseGeometry | None]
     try:
         read = [None if shape is None else shapely.from_wkb(shape) for shape in shapes]
     except shapely.errors.GEOSException as error:
-        raise SceneError(f"{path.name}: holds a geometry that can't be read ({error}).") from error
+        raise SceneError(
+            f"{path.name}: holds a geometry that can't be read ({one_line(error)})."
+        ) from error
     return meta["crs"], read
 
 
@@ -99,7 +101,7 @@ def _asked(path: Path, question: Any, *arguments: Any, **options: Any) -> Any:
             return question(*arguments, **options)
     # Errors of its own are RuntimeErrors, and broken files bring up others.
     except (RuntimeError, ValueError, OSError, UnicodeDecodeError) as error:
-        said = re.sub(r"\s+", " ", str(error)).replace(str(path), path.name)[:200]
+        said = one_line(str(error).replace(str(path), path.name), 200)
         raise SceneError(f"{path.name}: GDAL can't read it ({said}).") from error
 
 

@@ -16,7 +16,7 @@ from suite.scenes.maps.drawing import Drawing
 from suite.scenes.maps.options import MapOptions
 from suite.scenes.maps.polygons import obstacles_in_their_box
 from suite.scenes.maps.projection import check_projection
-from suite.scenes.maps.text import read_lines
+from suite.scenes.maps.text import one_line, read_lines
 
 _SRID = re.compile(r"\s*SRID\s*=\s*(\d{1,9})\s*;", re.IGNORECASE)
 
@@ -64,7 +64,7 @@ def _geometry(path: Path, line: int, text: str) -> BaseGeometry:
         geometry = shapely.from_wkt(text[srid.end() if srid else 0 :].strip())
     except (shapely.errors.GEOSException, ValueError) as error:
         raise SceneError(
-            f"{where}: no well-known text ({' '.join(str(error).split())[:120]}). "
+            f"{where}: no well-known text ({one_line(error)}). "
             "Write POLYGON ((0 0, 1 0, 0 1, 0 0)), and no text behind it."
         ) from error
     if srid and int(srid[1]):

@@ -57,7 +57,5 @@ def test_the_matrix_of_real_maps_asks_a_hundred_queries_of_each(maps):
 
 
 def test_without_any_scene_it_says_what_to_give(matrix_of):
-    with pytest.raises(
-        MatrixError, match=r"none\. Name some, or a folder of maps with --maps"
-    ):
+    with pytest.raises(MatrixError, match=r"none\. Name some, or a folder of maps with --maps"):
         load_matrix(matrix_of(""))

@@ -2,6 +2,7 @@
 
 import textwrap
 import time
+from pathlib import Path
 
 import pytest
 import shapely
@@ -220,3 +221,14 @@ def test_an_outline_counts_queries_where_the_file_does(tmp_path, monkeypatch):
     file.write_text('scenes = ["a", "b"]\nseeds = 3\nqueries = { random = 50 }\n' + PLANNERS)
     monkeypatch.setattr(matrix_file, "matrix_file", lambda _: file)
     assert outline("m")["runs"] == 2 * 3 * 50
+
+
+def test_the_matrix_of_the_readme_has_ten_lines_and_asks_for_a_hundred_queries(matrix):
+    readme = (Path(harness_run.__file__).parent / "README.md").read_text()
+    [text] = [block for block in readme.split("```toml\n")[1:] if "random = 100" in block]
+    lines = text.partition("```")[0].splitlines()
+    assert len(lines) <= 10
+    shown = "\n".join(lines).replace("tb3_sandbox.yaml", "maze").replace("seeds = 1\n", "")
+    found = matrix(shown + "\n", planners="")
+    assert [scene.name for scene in found.scenes] == ["maze@radius=0.2"]
+    assert (len(found.queries[0]), len(found.cells())) == (100, 400)
