@@ -62,7 +62,9 @@ def test_a_simulated_row_is_repeated_in_its_world(store):
 @pytest.mark.parametrize("modifiers", ["", "@radius=0.3", "@turn=20,radius=0.3"])
 def test_a_row_of_two_points_on_a_map_is_repeated_when_the_map_is_gone(tmp_path, modifiers):
     file = tmp_path / "yard.wkt"
-    file.write_text("MULTIPOLYGON (((4 0, 6 0, 6 7, 4 7, 4 0)), ((0 9.9, 10 9.9, 10 10, 0 10, 0 9.9)))")
+    file.write_text(
+        "MULTIPOLYGON (((4 0, 6 0, 6 7, 4 7, 4 0)), ((0 9.9, 10 9.9, 10 10, 0 10, 0 9.9)))"
+    )
     cell = cell_for(f"{file}{modifiers}", "kbga", seed=1, query="2,3:8,3", budget=COUNTED)
     with open_store(tmp_path / "s.db") as opened:
         opened.keep_scenes({cell.scene: load_scene(cell.scene_source)}, [cell])
