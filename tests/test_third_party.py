@@ -108,6 +108,7 @@ def test_it_keeps_the_contract_where_it_is_installed(environment):
     assert "small-prm: keeps the contract" in done(environment / "kbga-bench", "check", "small-prm")
 
 
+@pytest.mark.slow
 def test_a_matrix_runs_it_and_the_tables_hold_it(environment, tmp_path):
     (tmp_path / "matrix.toml").write_text(MATRIX)
     command = environment / "kbga-bench"

@@ -120,6 +120,7 @@ def test_a_sheet_is_a_small_file_and_the_same_bytes_each_time(run, tmp_path, suf
     assert len(first) < 300_000
 
 
+@pytest.mark.slow
 def test_an_animation_moves_between_updates_and_stays_small(run, tmp_path, monkeypatch):
     monkeypatch.setattr(simulation, "MOST_FRAMES", 12)
     animate(run, tmp_path / "a.gif")
