@@ -3,14 +3,15 @@
 The document is the scene's GeoJSON (:mod:`suite.scenes.geojson`), compressed, and any GIS tool
 reads what is in it. Reading it back checks, cuts and grows nothing: each coordinate is what it was,
 and so are the hash and the arrangement, bit for bit, whatever importers and modifiers do by then.
-A member ``kept`` of the collection has what a scene file does not say: the radius that the
-obstacles are grown by already, what blocks queries, their strata, and the scene's hash.
+A member ``kept`` of the collection has all else that a scene says: the radius that the obstacles
+are grown by already, what blocks queries, their strata, and its hash.
 """
 
 import hashlib
 import json
 import zlib
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -22,12 +23,19 @@ from suite.errors import SceneError
 from suite.scenes.dynamics import parse_dynamics
 from suite.scenes.geojson import as_geojson
 from suite.scenes.scene import Obstacle, Query, Scene
+from suite.typed import plain
 
 SUFFIX = ".kept"
 """Of a document that lies in a file: no suffix of maps or scene files, which are checked."""
 
 LEVEL = 6
 """Of zlib: 9 takes twice as long, or ten times, for 1 % at the most (measured on six scenes)."""
+
+_DRAWN = ("name", "workspace", "obstacles", "queries", "properties")
+"""What the features and the members of the collection say of a scene."""
+
+_ENDS = ("name", "start", "goal")
+"""And of a query."""
 
 _Points = dict[str, dict[str, list[float]]]
 
@@ -40,12 +48,12 @@ def pack_scene(scene: Scene) -> bytes:
     scene : Scene
         Static or dynamic, grown or not.
     """
-    queries = scene.queries
+    queries = {query.name: _others(query, _ENDS) for query in scene.queries}
     kept = {
         "hash": scene.hash,
-        "radius": scene.radius,
-        "blocked": {q.name: q.blocked for q in queries if q.blocked is not None},
-        "strata": {q.name: q.stratum for q in queries if q.stratum is not None},
+        "scene": _others(scene, (*_DRAWN, "path")),
+        "queries": {name: others for name, others in queries.items() if others},
+        "properties": list(scene.properties),
     }
     return zlib.compress(as_geojson(scene, {"kept": kept}).encode(), LEVEL)
 
@@ -113,16 +121,17 @@ def _scene(collection: Mapping[str, Any]) -> Scene:
             obstacles.append(Obstacle(own["name"], _polygon(feature), parse_dynamics(own)))
         else:
             ends[role][own["query"]] = feature["geometry"]["coordinates"]
-    crs = {"crs": collection["crs"]} if "crs" in collection else {}
     kept = collection["kept"]
+    crs = {"crs": collection["crs"]} if "crs" in collection else {}
+    properties = collection["properties"] | crs
     (workspace,) = rooms
     return Scene(
         name=collection["name"],
         workspace=workspace,
         obstacles=tuple(obstacles),
         queries=tuple(_query(name, ends, kept) for name in ends["start"]),
-        properties=MappingProxyType(collection["properties"] | crs),
-        radius=kept["radius"],
+        properties=MappingProxyType({name: properties[name] for name in kept["properties"]}),
+        **_as_they_were(kept["scene"]),
     )
 
 
@@ -136,4 +145,22 @@ def _query(name: str, ends: _Points, kept: Mapping[str, Any]) -> Query:
     start, goal = (np.array(ends[role][name], dtype=np.float64) for role in ("start", "goal"))
     for point in (start, goal):
         point.setflags(write=False)
-    return Query(name, start, goal, kept["blocked"].get(name), kept["strata"].get(name))
+    return Query(name, start, goal, **_as_they_were(kept["queries"].get(name, {})))
+
+
+def _others(value: Scene | Query, left_out: tuple[str, ...]) -> dict[str, Any]:
+    """The fields of a value but some, where they are not what they are by default, as plain data.
+
+    Whatever field is added is kept so, and what was kept before it has its default.
+    """
+    given = {f.name: (getattr(value, f.name), f.default) for f in fields(value)}
+    return {
+        name: plain(own)
+        for name, (own, default) in given.items()
+        if name not in left_out and own != default
+    }
+
+
+def _as_they_were(others: Mapping[str, Any]) -> dict[str, Any]:
+    """The same, read back: JSON has lists for tuples."""
+    return {name: tuple(v) if isinstance(v, list) else v for name, v in others.items()}

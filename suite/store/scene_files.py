@@ -31,15 +31,15 @@ class Change(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class FileChange:
-    """A scene whose file is not any more what rows ran on.
+    """A file of a scene, or of several turned or grown, that is not any more what rows ran on.
 
-    source : as the rows name it.
+    file : the one that they name.
     change : what became of it.
     rows : how many ran on it as it was.
     kept : how many of them have it in the store, and need no file.
     """
 
-    source: str
+    file: str
     change: Change
     rows: int
     kept: int
@@ -51,7 +51,7 @@ class FileChange:
             Change.UNREADABLE: "can't be read any more",
             Change.CHANGED: "has changed",
         }[self.change]
-        text = f"{self.source} {verb} since {rows_in_words(self.rows)} ran on it"
+        text = f"{self.file} {verb} since {rows_in_words(self.rows)} ran on it"
         if self.kept == self.rows:
             return f"{text}; the store keeps it as it was"
         lost = self.rows - self.kept
@@ -81,13 +81,13 @@ def changed_files(store: Path, runs: pd.DataFrame) -> list[FileChange]:
     queries = read_queries(store)
     digests = _digests_of_files(store)
     known = runs.merge(queries[["scene", "scene_hash", "query", "digest"]], how="left")
-    found = []
+    found: dict[tuple[str, Change], list[pd.DataFrame]] = {}
     for source, rows in known.groupby("scene_source", sort=False):
-        changed = _changed_rows(str(source), rows, digests)
-        for change, those in changed.items():
-            kept = int(those["digest"].notna().sum())
-            found.append(FileChange(str(source), change, len(those), kept))
-    return found
+        file = main_file(str(source))
+        if file is not None:
+            for change, those in _changed_rows(str(source), file, rows, digests).items():
+                found.setdefault((str(file), change), []).append(those)
+    return [_counted(file, change, pd.concat(parts)) for (file, change), parts in found.items()]
 
 
 def changed_file(store: Path, cell: Cell) -> FileChange | None:
@@ -96,12 +96,14 @@ def changed_file(store: Path, cell: Cell) -> FileChange | None:
     return next(iter(changed_files(store, runs[runs["key"] == cell.key])), None)
 
 
+def _counted(file: str, change: Change, rows: pd.DataFrame) -> FileChange:
+    return FileChange(file, change, len(rows), int(rows["digest"].notna().sum()))
+
+
 def _changed_rows(
-    source: str, rows: pd.DataFrame, digests: dict[Any, Any]
+    source: str, file: Path, rows: pd.DataFrame, digests: dict[Any, Any]
 ) -> dict[Change, pd.DataFrame]:
-    file = main_file(source)
-    if file is None:
-        return {}
+    """Of the rows of a source, those that did not run on what it is now, by what became of it."""
     if not file.exists():
         return {Change.GONE: rows}
     now = files_digest(source)

@@ -16,6 +16,9 @@ from suite.typed import plain
 MOST_FAILURES = 5
 """Failed rows that are named to people."""
 
+MOST_FILES = 5
+"""Files of scenes that are: a store that comes from elsewhere may name hundreds."""
+
 
 def status(store: Path) -> dict[str, Any]:
     """How a store stands, as plain data.
@@ -28,8 +31,8 @@ def status(store: Path) -> dict[str, Any]:
         ``planners``, in the order of the matrix, count wanted runs. ``failures`` are the wanted
         rows that ended in one of PlanStatus.FAILURES (all of them, if no matrix wants any): key,
         name, status and reason. ``contended`` counts the rows, of these, whose runs had no core for
-        themselves. ``scene_files`` are the scenes of rows whose files are gone or hold another
-        scene now: source, change, rows, and how many of these the store keeps the scene of.
+        themselves. ``scene_files`` are those that are gone or hold another scene than rows ran on:
+        file, change, rows, and how many of these have the scene in the store.
         ``writer`` says who has it open for writing, or is null.
 
     Raises
@@ -89,7 +92,7 @@ def as_text(found: dict[str, Any]) -> str:
         good = f"{tally['succeeded']} succeeded"
         lines.append(f"  {name}: {tally['done']} of {tally['wanted']}, {good}{failed}")
     lines += _failures_as_text(found["failures"])
-    lines += [f"  {FileChange(**change).as_text()}" for change in found["scene_files"]]
+    lines += _files_as_text(found["scene_files"])
     if found["contended"]:
         lines.append(
             f"  {found['contended']} rows had no core for themselves; the same `kbga-bench run` "
@@ -136,6 +139,14 @@ def _failures_as_text(failures: Sequence[Mapping[str, Any]]) -> list[str]:
         lines.append(f"    {row['key'][:DIGITS]}  {row['name']}  {row['status']}{why}")
     more = len(failures) - MOST_FAILURES
     return lines + ([f"    and {more} more; --format json has all"] if more > 0 else [])
+
+
+def _files_as_text(changes: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The first files that are not what they were, those first of which the store lacks scenes."""
+    files = sorted((FileChange(**change) for change in changes), key=lambda c: c.kept == c.rows)
+    lines = [f"  {change.as_text()}" for change in files[:MOST_FILES]]
+    more = len(files) - MOST_FILES
+    return lines + ([f"  and {more} more scene files; --format json has all"] if more > 0 else [])
 
 
 def _counts(values: Any) -> dict[str, int]:
