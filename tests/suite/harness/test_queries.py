@@ -10,6 +10,7 @@ import shapely
 from suite.errors import MatrixError
 from suite.harness import run as harness_run
 from suite.harness.cell import run_cell
+from suite.harness.forecast import forecast_matrix
 from suite.harness.fork_server import LONGEST, Warmth, _read
 from suite.harness.matrix import load_matrix
 from suite.harness.matrix_file import outline
@@ -159,6 +160,10 @@ def test_a_blocked_query_is_refused_for_every_planner_and_nothing_is_started_for
         own(cells, *rest)
 
     monkeypatch.setattr(harness_run, "run_each", watched)
+    told = forecast_matrix(
+        wanted, tmp_path / "s.db", jobs=1, quick=False, which=harness_run.Which.MISSING
+    )
+    assert told.as_text().startswith("2 of 6 runs would be run; 4 need not be.")
     with open_store(tmp_path / "s.db") as store:
         end = run_matrix(wanted, store, jobs=1)
         again = run_matrix(wanted, store, jobs=1)
