@@ -177,7 +177,8 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
         :mod:`suite.scenes.modifiers`. A string with a path separator or with the suffix of a scene
         file (``.geojson``, ``.json``) is a path. A Path has no modifiers.
     inflate : float
-        Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`.
+        Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`. If neither this nor
+        a modifier gives one, a scene file may.
 
     Returns
     -------
@@ -199,7 +200,7 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
         base, text = split_modifiers(name_or_path)
         if text:
             return _modified(base, parse_modifiers(text, name_or_path), inflate)
-    return _unmodified(name_or_path, MapOptions(), inflate)
+    return _unmodified(name_or_path, MapOptions(), inflate or None)
 
 
 def _modified(base: str, modifiers: Modifiers, inflate: float) -> Scene:
@@ -208,7 +209,9 @@ def _modified(base: str, modifiers: Modifiers, inflate: float) -> Scene:
     # Of an end, at a time or moved, is said in the end whether it is free.
     keep = modifiers.snap or modifiers.at is not None
     grown_last = modifiers.moves or modifiers.at is not None
-    scene = _unmodified(base, modifiers.options, 0.0 if grown_last else radius, keep)
+    scene = _unmodified(base, modifiers.options, 0.0 if grown_last else radius or None, keep)
+    if grown_last:
+        radius = radius or float(scene.properties.get("radius", 0.0))
     name = f"{scene.name}{MARK}{modifiers.text}"
     if modifiers.at is not None:
         scene = frozen(scene, modifiers.at, inflate=0.0 if modifiers.moves else radius)
@@ -220,19 +223,20 @@ def _modified(base: str, modifiers: Modifiers, inflate: float) -> Scene:
 def _unmodified(
     name_or_path: str | Path,
     options: MapOptions,
-    inflate: float = 0.0,
+    inflate: float | None = None,
     keep_blocked: bool = False,
 ) -> Scene:
+    """A scene as it is drawn. inflate : metres; None, as its file says; 0, not at all."""
     if _is_path(name_or_path):
         path = Path(name_or_path)
         if path.suffix.lower() in FORMATS:
-            return read_map(path, options, inflate=inflate)
+            return read_map(path, options, inflate=inflate or 0.0)
         _refuse(options, path.name)
         return read_scene(path, inflate=inflate, keep_blocked=keep_blocked)
     name = str(name_or_path)
     _refuse(options, name)
     if _is_generated(name):
-        return _inflated(_generated(name), inflate)
+        return _inflated(_generated(name), inflate or 0.0)
     return read_scene(scene_file(name), inflate=inflate)
 
 

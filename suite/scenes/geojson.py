@@ -36,7 +36,8 @@ Members of the collection that the suite reads: ``name`` (default: the file's na
 :mod:`suite.scenes.crs`) and ``properties``, an object of which it knows ``description``,
 ``figure``, ``paper_best``, ``reconstruction`` and ``optimum`` (from query name to exact optimal
 length, metres: what the file says of itself, for a reader; results are measured by the one that is
-computed); of a dynamic scene also ``world``, the default settings of its simulation (see
+computed) and ``radius`` (of the robot, metres: obstacles grow by it, unless whoever names the scene
+gives another); of a dynamic scene also ``world``, the default settings of its simulation (see
 :class:`suite.simulation.settings.WorldSettings`), and ``gates``, from a name to a segment
 ``[[x, y], [x, y]]`` across an opening, so that a run can say which one the robot passed. Others
 are kept. Any JSON, GIS or shapely tool reads the file.
@@ -68,19 +69,20 @@ LONGEST_NAME = 200
 _LINE = re.compile(rf"[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]{{1,{LONGEST_NAME}}}")
 """No control characters, no ends of lines, nothing that UTF-8 can't hold."""
 
-_READ = ("optimum", "world", "gates")
+_READ = ("optimum", "radius", "world", "gates")
 """Properties of the collection that are read, and may be null for being left out."""
 
 
-def read_scene(path: Path, *, inflate: float = 0.0, keep_blocked: bool = False) -> Scene:
+def read_scene(path: Path, *, inflate: float | None = None, keep_blocked: bool = False) -> Scene:
     """Read a scene file.
 
     Parameters
     ----------
     path : Path
         A GeoJSON file in the format of this module.
-    inflate : float
-        Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`.
+    inflate : float, optional
+        Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`. Default: what the
+        file says.
     keep_blocked : bool
         Keep queries whose ends are not free; see there.
 
@@ -133,7 +135,7 @@ def read_scene(path: Path, *, inflate: float = 0.0, keep_blocked: bool = False) 
         _paired(where, ends["start"], ends["goal"]),
         properties=properties,
         path=path,
-        inflate=inflate,
+        inflate=properties.get("radius", 0.0) if inflate is None else inflate,
         keep_blocked=keep_blocked,
     )
 
@@ -183,6 +185,7 @@ def _properties(where: str, document: Mapping[str, Any]) -> dict[str, Any]:
     try:
         check_crs(document.get("crs"))
         _check_optimum(own.get("optimum", {}))
+        _check_radius(own.get("radius", 0.0))
         _check_gates(own.get("gates", {}))
     except SceneError as error:
         raise SceneError(f"{where}: {error}") from error
@@ -201,6 +204,16 @@ def _check_optimum(optima: Any) -> None:
             raise SceneError(
                 f"its property 'optimum' of {shown(query)} is {shown(length)}. {mend}"
             ) from error
+
+
+def _check_radius(radius: Any) -> None:
+    try:
+        typed(radius, Length)
+    except MisfitError as error:
+        raise SceneError(
+            f"its property 'radius' is {shown(radius)}. Give the robot's, in metres, or leave it "
+            "out."
+        ) from error
 
 
 def _check_gates(gates: Any) -> None:

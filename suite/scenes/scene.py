@@ -334,8 +334,12 @@ def make_scene(
 
 
 def _still_true(properties: Mapping[str, Any], inflate: float) -> dict[str, Any]:
-    """The properties without what holds for a point only, if the robot is none."""
-    return {k: v for k, v in properties.items() if inflate == 0.0 or k != "optimum"}
+    """The properties without what holds for a point only, if the robot is none.
+
+    Nor is it to be grown again, by whoever reads the file that it is written to.
+    """
+    left_out = ("optimum", "radius") if inflate > 0.0 else ()
+    return {k: v for k, v in properties.items() if k not in left_out}
 
 
 def _check_unique(where: str, what: str, names: Sequence[str]) -> None:
