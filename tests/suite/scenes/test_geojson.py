@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 import pytest
+import shapely
 from shapely.geometry import Polygon, box, mapping, shape
 
 from suite.errors import SceneError
