@@ -260,6 +260,7 @@ def _unmodified(
     inflate: float | None,
     keep_blocked: bool = False,
 ) -> Scene:
+    """A scene as it is drawn. inflate : metres; None, as its file says; 0, not at all."""
     if _is_path(name_or_path):
         path = Path(name_or_path)
         if path.suffix.lower() in FORMATS:
