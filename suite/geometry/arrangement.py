@@ -187,17 +187,11 @@ def _join_by_vertices(faces: Sequence[Polygon], places: Places) -> list[int]:
 
     xy, index = shapely.get_coordinates(np.array(faces, dtype=np.object_), return_index=True)
     pairs = np.unique(np.stack([places.numbers(xy), index], axis=1), axis=0)
-    for (v, i), (w, j) in pairwise(pairs[_is_repeated(pairs[:, 0])].tolist()):
-        if v == w:
-            parent[root(j)] = root(i)
+    same = pairs[1:, 0] == pairs[:-1, 0]
+    for i, j in zip(pairs[:-1, 1][same].tolist(), pairs[1:, 1][same].tolist(), strict=True):
+        parent[root(j)] = root(i)
     numbers: dict[int, int] = {}
     return [numbers.setdefault(root(i), len(numbers)) for i in range(len(faces))]
-
-
-def _is_repeated(ascending: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Which of these numbers occur more than once."""
-    same = np.diff(ascending) == 0
-    return np.concatenate([[False], same]) | np.concatenate([same, [False]])
 
 
 class _Edges:
@@ -233,7 +227,7 @@ class _Edges:
         xmin, ymin, xmax, ymax = workspace.bounds
         margin = 0.5 * FRAME_MARGIN * max(xmax - xmin, ymax - ymin)
         low, high = (xmin - margin, ymin - margin), (xmax + margin, ymax + margin)
-        is_inner = ((places.xy > low) & (places.xy < high)).all(axis=1)
+        is_inner = np.all((places.xy > low) & (places.xy < high), axis=1)
         self.is_outer = ~(is_inner[self.tail] & is_inner[self.head])
 
     @property

@@ -7,6 +7,7 @@ already in the obstacles (paper section II-A), or are added by ``inflate``.
 import hashlib
 import json
 import warnings
+from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -287,8 +288,8 @@ def _still_true(properties: Mapping[str, Any], inflate: float) -> dict[str, Any]
 
 
 def _check_unique(where: str, what: str, names: Sequence[str]) -> None:
-    for name in names:
-        if names.count(name) > 1:
+    for name, count in Counter(names).items():
+        if count > 1:
             raise SceneError(
                 f"{where}: two {what} are named '{name}'. Give each a name of its own."
             )
