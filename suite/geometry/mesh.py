@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from shapely.geometry import Polygon
 
 from suite.geometry.coordinates import Coordinates
+from suite.geometry.parts import as_complex
 from suite.geometry.predicates import orientation
 from suite.jit import kernel
 
@@ -66,7 +67,7 @@ def mesh_of(free: Sequence[Polygon], coordinates: Coordinates) -> Mesh | None:
     cut = shapely.get_parts(shapely.constrained_delaunay_triangles(local))
     # GEOS lists triangles clockwise.
     corners = shapely.get_coordinates(cut).reshape(-1, 4, 2)[:, 2::-1].reshape(-1, 2)
-    places, origin = np.unique(_as_complex(corners), return_inverse=True)
+    places, origin = np.unique(as_complex(corners), return_inverse=True)
     vertices = coordinates.world(np.stack([places.real, places.imag], axis=1))
     twin = _twins(origin, len(vertices))
     if not _fit(local, places, origin, twin):
@@ -84,11 +85,6 @@ def mesh_of(free: Sequence[Polygon], coordinates: Coordinates) -> Mesh | None:
     for table in mesh[:-1]:
         table.setflags(write=False)
     return mesh
-
-
-def _as_complex(xy: NDArray[np.float64]) -> NDArray[np.complex128]:
-    """Places as numbers, which sort faster than rows do. 0.0 and -0.0 are one."""
-    return np.ascontiguousarray(xy + 0.0).view(np.complex128)[:, 0]
 
 
 def _after(half_edges: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -115,7 +111,7 @@ def _fit(
     """Whether each side of a triangle is another's too, or one of a face."""
     rings = shapely.get_rings(free)
     xy, ring = shapely.get_coordinates(rings, return_index=True)
-    numbers = np.searchsorted(places, _as_complex(xy))
+    numbers = np.searchsorted(places, as_complex(xy))
     numbers = np.minimum(numbers, len(places) - 1)
     stays = ring[1:] == ring[:-1]
     a, b = numbers[:-1][stays], numbers[1:][stays]

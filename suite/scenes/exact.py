@@ -105,7 +105,7 @@ X, Y, COST, PARENT, CLOSED = range(5)
 # Columns of the queue, a binary heap of cones. LEAST is the least length of a path through a cone,
 # ENTRY the half-edge by which it enters a triangle, ROOT the node that it is seen from, LEFT and
 # RIGHT the corners on the rays that bound it; where a path goes straight on past the root, that ray
-# is the root's own, from its parent on. A row with NOWHERE to enter is a node that is to be left.
+# is the root's own, from its parent on. A negative ENTRY is a node, ROOT, that is to be left.
 LEAST, ENTRY, ROOT, LEFT, RIGHT = range(5)
 NOWHERE = -1
 
@@ -133,23 +133,27 @@ def _search(sx: float, sy: float, gx: float, gy: float, mesh: Mesh) -> tuple[np.
     # What is left at a time adds no more than three rows for each triangle.
     most = 3 * (mesh.most + IN_A_ROW)
     queue = np.empty((4 * most, 5))
-    checks, size = _leave_start(mesh.boxes, half_edges, fans, nodes, marks, queue)
+    queue[0, LEAST], queue[0, ENTRY], queue[0, ROOT] = 0.0, NOWHERE - start, start
+    checks = 0
+    size = np.int64(1)  # a literal number has a type of its own: all would be compiled twice
     while size > 0:
         if size + most > queue.shape[0]:
             queue = _larger(queue, size)
-        node = int(queue[0, ROOT])
-        if queue[0, ENTRY] != NOWHERE:
+        if queue[0, ENTRY] >= 0.0:
             seen, size = _follow(half_edges, fans, nodes, marks, queue, size)
             checks += seen
             continue
-        bound = queue[0, LEAST]
+        bound, node = queue[0, LEAST], int(queue[0, ROOT])
         size = _pop(queue, size)
         if nodes[node, CLOSED] != 0.0:
             continue
         nodes[node, CLOSED] = 1.0
         if node == goal:
             return _trace_back(nodes), checks
-        seen, size = _turn(half_edges, fans, nodes, marks, queue, size, bound, node)
+        if node == start:
+            seen, size = _leave_start(mesh.boxes, half_edges, fans, nodes, marks, queue, size)
+        else:
+            seen, size = _turn(half_edges, fans, nodes, marks, queue, size, bound, node)
         checks += seen
     return np.empty(0, dtype=np.int64), checks
 
@@ -191,40 +195,17 @@ def _copy(queue: np.ndarray, row: int, to: int) -> None:
 
 
 @kernel
-def _put(
-    queue: np.ndarray,
-    at: int,
-    size: int,
-    least: float,
-    entry: int,
-    root: int,
-    left: int,
-    right: int,
-) -> None:
-    """Put a row into a heap where row ``at`` is free, and sift it to its place."""
-    while at > 0 and queue[(at - 1) >> 1, LEAST] > least:
-        _copy(queue, (at - 1) >> 1, at)
-        at = (at - 1) >> 1
-    child = 2 * at + 1
-    while child < size:
-        if child + 1 < size and queue[child + 1, LEAST] < queue[child, LEAST]:
-            child += 1
-        if queue[child, LEAST] >= least:
-            break
-        _copy(queue, child, at)
-        at = child
-        child = 2 * at + 1
-    queue[at, LEAST] = least
-    queue[at, ENTRY], queue[at, ROOT] = entry, root
-    queue[at, LEFT], queue[at, RIGHT] = left, right
-
-
-@kernel
 def _push(
     queue: np.ndarray, size: int, least: float, entry: int, root: int, left: int, right: int
 ) -> int:
     """Add a row to a heap; return the new number of rows."""
-    _put(queue, size, size, least, entry, root, left, right)
+    at = size
+    while at > 0 and queue[(at - 1) >> 1, LEAST] > least:
+        _copy(queue, (at - 1) >> 1, at)
+        at = (at - 1) >> 1
+    queue[at, LEAST] = least
+    queue[at, ENTRY], queue[at, ROOT] = entry, root
+    queue[at, LEFT], queue[at, RIGHT] = left, right
     return size + 1
 
 
@@ -232,41 +213,28 @@ def _push(
 def _pop(queue: np.ndarray, size: int) -> int:
     """Take the first row from a heap; return the new number of rows."""
     size -= 1
-    if size > 0:
-        least, entry, root = queue[size, LEAST], int(queue[size, ENTRY]), int(queue[size, ROOT])
-        left, right = int(queue[size, LEFT]), int(queue[size, RIGHT])
-        _put(queue, 0, size, least, entry, root, left, right)
+    at, child = 0, 1
+    while child < size:  # what was the last row is still there, and sinks from the top
+        if child + 1 < size and queue[child + 1, LEAST] < queue[child, LEAST]:
+            child += 1
+        if queue[child, LEAST] >= queue[size, LEAST]:
+            break
+        _copy(queue, child, at)
+        at, child = child, 2 * child + 1
+    _copy(queue, size, at)
     return size
 
 
-@kernel
-def _holds(half_edges: np.ndarray, nodes: np.ndarray, t: int, node: int) -> bool:
+@inlined_kernel
+def _holds(boxes: np.ndarray, half_edges: np.ndarray, nodes: np.ndarray, t: int, node: int) -> bool:
     """Whether a node lies in a triangle or on its border."""
-    a, b, c = (
-        half_edges[3 * t, ORIGIN],
-        half_edges[3 * t + 1, ORIGIN],
-        half_edges[3 * t + 2, ORIGIN],
-    )
-    return (
-        side_of(nodes, a, b, node) >= 0
-        and side_of(nodes, b, c, node) >= 0
-        and side_of(nodes, c, a, node) >= 0
-    )
-
-
-@kernel
-def _next_at(
-    boxes: np.ndarray, half_edges: np.ndarray, nodes: np.ndarray, node: int, t: int
-) -> int:
-    """First triangle from t on in which a node lies, or on its border; their number if none."""
     x, y = nodes[node, X], nodes[node, Y]
-    while t < boxes.shape[0]:
-        if (
-            (x >= boxes[t, 0]) & (y >= boxes[t, 1]) & (x <= boxes[t, 2]) & (y <= boxes[t, 3])
-        ) and _holds(half_edges, nodes, t, node):
-            break
-        t += 1
-    return t
+    if (x < boxes[t, 0]) | (y < boxes[t, 1]) | (x > boxes[t, 2]) | (y > boxes[t, 3]):
+        return False
+    for h in range(3 * t, 3 * t + 3):
+        if side_of(nodes, half_edges[h, ORIGIN], half_edges[following(h), ORIGIN], node) < 0:
+            return False
+    return True
 
 
 @kernel
@@ -279,14 +247,14 @@ def _mark_goal(
 ) -> None:
     """Mark the triangles of the goal, and those on the way out of its pocket."""
     goal = nodes.shape[0] - 1
-    t = _next_at(boxes, half_edges, nodes, goal, 0)
-    while t < boxes.shape[0]:
+    for t in range(outward.shape[0]):
+        if not _holds(boxes, half_edges, nodes, t, goal):
+            continue
         marks[t] |= HAS_GOAL | LEADS_ON
         way = t
         while outward[way] >= 0:
             way = half_edges[outward[way], WAY] // 3
             marks[way] |= LEADS_ON
-        t = _next_at(boxes, half_edges, nodes, goal, t + 1)
 
 
 @inlined_kernel
@@ -312,7 +280,7 @@ def _reach(nodes: np.ndarray, queue: np.ndarray, size: int, node: int, root: int
     nodes[node, COST] = cost
     nodes[node, PARENT] = root
     least = cost + _distance(nodes, node, nodes.shape[0] - 1)
-    return _push(queue, size, least, NOWHERE, node, node, node)
+    return _push(queue, size, least, NOWHERE - node, node, node, node)
 
 
 @kernel
@@ -345,13 +313,15 @@ def _leave_start(
     nodes: np.ndarray,
     marks: np.ndarray,
     queue: np.ndarray,
+    size: int,
 ) -> tuple[int, int]:
     """Queue all that the start sees; the number of triangles that it lies in, and of rows."""
     goal = nodes.shape[0] - 1
     start = goal - 1
-    found, size = 0, 0
-    t = _next_at(boxes, half_edges, nodes, start, 0)
-    while t < boxes.shape[0]:
+    found = 0
+    for t in range(boxes.shape[0]):
+        if not _holds(boxes, half_edges, nodes, t, start):
+            continue
         found += 1
         if marks[t] & HAS_GOAL:
             size = _reach(nodes, queue, size, goal, start)
@@ -361,7 +331,6 @@ def _leave_start(
                 size = _reach_corner(half_edges, fans, nodes, queue, size, a, start)
             if side_of(nodes, a, b, start) > 0:
                 size = _queue(half_edges, nodes, marks, queue, size, 0.0, h, start, b, a)
-        t = _next_at(boxes, half_edges, nodes, start, t + 1)
     return found, size
 
 

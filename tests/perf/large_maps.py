@@ -8,6 +8,7 @@ counts as little as it can.
 """
 
 import argparse
+import sys
 import time
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -44,7 +45,7 @@ def copies(scene: Scene, columns: int, rows: int) -> Drawn:
         for polygon in outlines(scene)
     ]
     room = box(xmin, ymin, xmax + (columns - 1) * dx, ymax + (rows - 1) * dy)
-    far = query.goal + ((columns - 1) * dx, (rows - 1) * dy)
+    far = np.add(query.goal, ((columns - 1) * dx, (rows - 1) * dy))
     return room, obstacles, (query.start, far)
 
 
@@ -108,12 +109,12 @@ def measure(name: str, count: int) -> None:
         times.append(min(cpu(partial(shortest_path, scene, query)) for _ in range(3)))
         none += shortest_path(scene, query).path is None
     ms = 1e3 * np.array(times)
-    print(
+    sys.stdout.write(
         f"{name:18} {scene.vertex_count:6} vertices  load {load:6.2f} s  prepare {ready:6.2f} s  "
         f"query median {np.median(ms):7.3f} ms  90 % {np.quantile(ms, 0.9):7.3f}  "
-        f"worst {ms.max():7.3f}  without a path {none}/{count}",
-        flush=True,
+        f"worst {ms.max():7.3f}  without a path {none}/{count}\n"
     )
+    sys.stdout.flush()
 
 
 if __name__ == "__main__":
