@@ -245,7 +245,7 @@ def test_a_scene_without_a_path_has_no_gap_but_a_map(tmp_path, closed_file):
     records = [ran(closed_file, "visibility-graph"), ran("zigzag", "kbga")]
     page = report_of(write_store(tmp_path / "closed.db", records))
     assert "no optimum is known" in page.text["scenes"]
-    assert ["scenes without an optimum", "1", "closed"] in [r[:3] for r in page.cells["missing"]]
+    assert ["queries without an optimum", "1", "closed"] in [r[:3] for r in page.cells["missing"]]
     assert len([f for f in page.all("svg") if f.get("role") == "img"]) == 3, "two maps, a player"
 
 
