@@ -297,3 +297,15 @@ def test_simulated_runs_are_shown_as_sheets_and_tables(tmp_path):
     assert "simulations" in page.cells
     # Of a drive there is no single gap: charts would say that no run found a path.
     assert "convergence" not in page.text
+
+
+def test_reasons_that_differ_in_numbers_alone_are_one_row(tmp_path):
+    places = ["3, 4.25", "-17.5, 1e-3", "88, 0"]
+    records = [
+        failed(PlanStatus.INVALID, f"the path enters a wall at {place}.", seed=seed)
+        for seed, place in enumerate(places)
+    ]
+    page = report_of(write_store(tmp_path / "s.db", records))
+    (row,) = [row for row in page.cells["failures"] if row]
+    assert row[1:3] == ["invalid", "3"]
+    assert row[4] == "the path enters a wall at 3, 4.25."
