@@ -3,8 +3,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALLED := .venv/.installed
-# What is installed from this folder beside the base: all planners, and rows as parquet.
-EXTRAS := others,parquet
+# What is installed from this folder beside the base: all planners, rows as parquet, maps of a GIS.
+EXTRAS := others,parquet,gdal
 STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
@@ -77,8 +77,10 @@ test-loaded: setup-dev browser kernels
 	done; \
 	$(ORDINARY) $(TESTS)
 
+# Hours; ONE_IN=40 runs one in forty of them, others at each commit.
+ONE_IN ?= 1
 test-slow: setup-dev
-	$(BIN)/python -m pytest -q -m slow -n 2 --dist worksteal
+	$(BIN)/python -m pytest -q -m slow --one-in $(ONE_IN) -n 2 --dist worksteal
 
 # The harness is killed at 100 random moments of a matrix, and resumed.
 torture: setup-dev

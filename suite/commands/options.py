@@ -27,7 +27,35 @@ SceneArgument = Annotated[
 StoreArgument = Annotated[Path, typer.Argument(metavar="STORE", help="Result store (SQLite).")]
 PlannerOption = Annotated[str, typer.Option(help="Name of the planner; see `list planners`.")]
 SeedOption = Annotated[int, typer.Option(min=0, max=seeds.MOST, help="Of the random stream.")]
-QueryOption = Annotated[str | None, typer.Option(help="Name of the query; default: the first.")]
+QueryOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME",
+        help="Name of the query, or x,y:x,y; `all` for each in turn. Default: the first.",
+    ),
+]
+StartOption = Annotated[
+    str | None,
+    typer.Option(metavar="X,Y", help="Start anywhere, metres; with --goal, in place of --query."),
+]
+GoalOption = Annotated[
+    str | None, typer.Option(metavar="X,Y", help="Goal anywhere, metres; with --start.")
+]
+RadiusOption = Annotated[
+    float | None,
+    typer.Option(
+        min=0.0, metavar="METRES", help="Of the robot: obstacles grow by it, the room shrinks."
+    ),
+]
+SnapOption = Annotated[
+    bool, typer.Option("--snap", help="Move ends that are not free to the nearest place that is.")
+]
+AtOption = Annotated[
+    float | None,
+    typer.Option(
+        min=0.0, metavar="SECONDS", help="A dynamic scene as it is at that time, standing still."
+    ),
+]
 SettingsOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="A setting of the planner; repeatable."),

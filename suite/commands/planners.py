@@ -4,28 +4,37 @@ Floors above the planner interface are imported inside the commands: pandas and 
 longer to import than ``list`` takes to answer.
 """
 
+from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from suite.commands.options import (
+    AtOption,
     ChecksOption,
     CpuOption,
     GenerationsOption,
+    GoalOption,
     PlannerOption,
     PluginOption,
     QueryOption,
+    RadiusOption,
     SceneArgument,
     SeedOption,
     SettingsOption,
+    SnapOption,
+    StartOption,
     TextFormat,
     TextStyle,
     WallOption,
     use_plugins,
 )
 from suite.commands.output import print_file, print_json, say, working
+
+if TYPE_CHECKING:
+    from suite.store.record import Cell, RunRecord
 
 
 class Charge(StrEnum):
@@ -40,6 +49,11 @@ def plan(
     planner: PlannerOption,
     seed: SeedOption = 0,
     query: QueryOption = None,
+    start: StartOption = None,
+    goal: GoalOption = None,
+    radius: RadiusOption = None,
+    snap: SnapOption = False,
+    at: AtOption = None,
     settings: SettingsOption = None,
     plugin: PluginOption = None,
     wall_s: WallOption = None,
@@ -53,23 +67,51 @@ def plan(
 ) -> None:
     """Run one planner once, here and now, and say what came of it.
 
-    Exit code 0 if it found a path or proved that there is none, 1 otherwise.
+    With `--query all` once for each query of the scene, on a line each.
+
+    Exit code 0 if it found a path or proved that there is none, 1 otherwise, for any query.
 
     Example: kbga-bench plan zigzag --planner kbga --seed 7 --generations 60 --plot zigzag.png
+
+    Example: kbga-bench plan maze --planner kbga-plus --radius 0.5 --start 10,20 --goal 45,80
     """
     from suite.harness.cell import run_cell
-    from suite.harness.single import as_data, as_text, cell_for, parse_settings, succeeded
+    from suite.harness.single import (
+        as_data,
+        as_line,
+        as_text,
+        cell_for,
+        parse_settings,
+        query_names,
+        succeeded,
+        summary,
+    )
     from suite.planner import Budget, Recorder
+    from suite.scenes.modifiers import with_modifiers
 
     use_plugins(plugin)
-    cell = cell_for(
-        scene,
-        planner,
-        seed=seed,
-        query=query,
-        settings=parse_settings(settings or []),
-        budget=Budget(wall_s, generations, checks, cpu_s),
-    )
+    source = with_modifiers(scene, radius=radius, at=at, snap=snap)
+    cells = [
+        cell_for(
+            source,
+            planner,
+            seed=seed,
+            query=name,
+            settings=parse_settings(settings or []),
+            budget=Budget(wall_s, generations, checks, cpu_s),
+        )
+        for name in query_names(source, query, start, goal)
+    ]
+    if query == "all":
+        if plot is not None:
+            raise typer.BadParameter("It draws one run: name a query.", param_hint="--plot")
+        records = _each(cells, as_line, style)
+        if style is TextFormat.JSON:
+            print_json([as_data(record) for record in records])
+        else:
+            say(summary(records))
+        raise typer.Exit(0 if all(map(succeeded, records)) else 1)
+    [cell] = cells
     # Of the first population only: more would slow down the run that is timed.
     recorder = Recorder(snapshot_of=lambda generation: plot is not None and generation == 0)
     if plot is not None:
@@ -88,6 +130,20 @@ def plan(
     if plot is not None:
         print_file(plot, style)
     raise typer.Exit(0 if succeeded(record) else 1)
+
+
+def _each(
+    cells: "list[Cell]", as_line: "Callable[[RunRecord], str]", style: TextFormat
+) -> "list[RunRecord]":
+    """The records of several runs; for people each is told when it is there."""
+    from suite.harness.cell import run_cell
+
+    records = []
+    for cell in cells:
+        records.append(run_cell(cell))
+        if style is TextFormat.TEXT:
+            say(as_line(records[-1]))
+    return records
 
 
 def check(
@@ -180,6 +236,10 @@ def simulate(
     planner: PlannerOption,
     seed: SeedOption = 0,
     query: QueryOption = None,
+    start: StartOption = None,
+    goal: GoalOption = None,
+    radius: RadiusOption = None,
+    snap: SnapOption = False,
     settings: SettingsOption = None,
     plugin: PluginOption = None,
     cold: Annotated[
@@ -217,23 +277,30 @@ def simulate(
 ) -> None:
     """Let a robot find its way through a dynamic scene, planning anew as it goes.
 
-    Exit code 0 if it reached the goal and was never hit, 1 otherwise.
+    With `--query all` once for each query of the scene, on a line each.
+
+    Exit code 0 if it reached the goal and was never hit, 1 otherwise, for any query.
 
     Example: kbga-bench simulate door --planner kbga --seed 3 --speed 5 --animate door.gif
     """
     from suite.harness.cell import run_cell
     from suite.harness.single import (
+        as_line,
         cell_for,
         parse_settings,
+        query_names,
         simulation_as_data,
         simulation_as_text,
         simulation_of,
+        summary,
         unhurt,
         world_for,
     )
     from suite.planner import Budget
+    from suite.scenes.modifiers import with_modifiers
 
     use_plugins(plugin)
+    source = with_modifiers(scene, radius=radius, snap=snap)
     if plot is not None:
         from suite.report.figures.files import check_figure_file
 
@@ -250,15 +317,28 @@ def simulate(
         "time_limit": time_limit,
         "charge": charge.value,
     }
-    cell = cell_for(
-        scene,
-        planner,
-        seed=seed,
-        query=query,
-        settings=parse_settings(settings or []),
-        budget=Budget(wall_s, generations, checks, cpu_s),
-        world=world_for(scene, overrides, cold=cold),
-    )
+    cells = [
+        cell_for(
+            source,
+            planner,
+            seed=seed,
+            query=name,
+            settings=parse_settings(settings or []),
+            budget=Budget(wall_s, generations, checks, cpu_s),
+            world=world_for(source, overrides, cold=cold),
+        )
+        for name in query_names(source, query, start, goal)
+    ]
+    if query == "all":
+        if plot is not None or animate is not None:
+            raise typer.BadParameter("Only one run is drawn: name a query.", param_hint="--query")
+        records = _each(cells, as_line, style)
+        if style is TextFormat.JSON:
+            print_json([simulation_as_data(record) for record in records])
+        else:
+            say(summary(records))
+        raise typer.Exit(0 if all(map(unhurt, records)) else 1)
+    [cell] = cells
     record = run_cell(cell)
     if style is TextFormat.JSON:
         print_json(simulation_as_data(record))

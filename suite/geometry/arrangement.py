@@ -41,6 +41,7 @@ class Arrangement:
         the two boundary edges that bound its free side: counter-clockwise from the first to the
         second everything is free, over more than half a turn.
     corner_group : (N,) int64, the group of each corner's first boundary edge, in ascending order.
+    free : the faces of free space; two may share an edge, where a sliver of solid was rounded away.
     """
 
     solid: MultiPolygon
@@ -48,6 +49,7 @@ class Arrangement:
     arrays: ObstacleArrays
     corners: NDArray[np.float64]
     corner_group: NDArray[np.int64]
+    free: tuple[Polygon, ...]
 
 
 def arrange(workspace: Polygon, obstacles: Sequence[Polygon]) -> Arrangement:
@@ -73,7 +75,7 @@ def _arrange(
     workspace: Polygon, obstacles: Sequence[Polygon], coordinates: Coordinates
 ) -> Arrangement:
     """The same, of local coordinates to local coordinates."""
-    faces, is_frame = _solid_faces(workspace, obstacles, coordinates)
+    faces, is_frame, free = _faces(workspace, obstacles, coordinates)
     parts, group_of, frame = _grouped_parts(faces, is_frame)
     order = sorted(range(len(parts)), key=lambda i: group_of[i])
     parts = [parts[i] for i in order]
@@ -87,6 +89,7 @@ def _arrange(
         arrays=_tables(parts, group_of, frame, edges, sectors, coordinates.grid),
         corners=corners,
         corner_group=corner_group,
+        free=tuple(free),
     )
 
 
@@ -109,6 +112,7 @@ def _moved(arrangement: Arrangement, coordinates: Coordinates) -> Arrangement:
         ),
         corners=_moved_rows(arrangement.corners, 6, coordinates),
         corner_group=arrangement.corner_group,
+        free=tuple(shapely.transform(f, coordinates.world) for f in arrangement.free),
     )
 
 
@@ -127,10 +131,10 @@ def _as_multipolygon(geometry: shapely.Geometry) -> MultiPolygon:
     return MultiPolygon(polygons)
 
 
-def _solid_faces(
+def _faces(
     workspace: Polygon, obstacles: Sequence[Polygon], coordinates: Coordinates
-) -> tuple[list[Polygon], list[bool]]:
-    """Solid faces of the arrangement, and which of them belong to the frame."""
+) -> tuple[list[Polygon], list[bool], list[Polygon]]:
+    """Solid faces of the arrangement, which of them belong to the frame, and its free faces."""
     xmin, ymin, xmax, ymax = workspace.bounds
     margin = FRAME_MARGIN * max(xmax - xmin, ymax - ymin)
     outer = shapely.box(xmin - margin, ymin - margin, xmax + margin, ymax + margin)
@@ -145,7 +149,12 @@ def _solid_faces(
     drawn = np.array(obstacles, dtype=np.object_)  # a list would lose its type when it is empty
     in_obstacle = set(inside.query(drawn, predicate="contains")[1].tolist())
     solid = [i for i in range(len(faces)) if i not in in_workspace or i in in_obstacle]
-    return [faces[i] for i in solid], [i not in in_workspace for i in solid]
+    free = sorted(in_workspace - in_obstacle)
+    return (
+        [faces[i] for i in solid],
+        [i not in in_workspace for i in solid],
+        [faces[i] for i in free],
+    )
 
 
 def _grouped_parts(

@@ -15,7 +15,8 @@ import os
 import signal
 import time
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import psutil
@@ -31,6 +32,8 @@ from suite.processes.multiprocessing_private import (
 )
 
 VARIABLE = "KBGA_BENCH_WARM"
+LONGEST = 100_000
+"""Bytes of a variable: Linux takes 131,072. What is longer is cut, and numbered."""
 
 POLL_S = 0.002
 
@@ -57,17 +60,38 @@ class Warmth:
 
     def environment(self) -> dict[str, str]:
         """The variables that a fork server needs to be warmed so."""
-        return {VARIABLE: json.dumps(asdict(self)), **ONE_THREAD}
+        return {**_written(self), **ONE_THREAD}
+
+
+@lru_cache(maxsize=4)
+def _written(warmth: Warmth) -> dict[str, str]:
+    """A warmth in variables, each scene once with all of its queries."""
+    queries: dict[str, list[str]] = {}
+    for source, query in warmth.queries:
+        queries.setdefault(source, []).append(query)
+    text = json.dumps(asdict(replace(warmth, queries=())) | {"queries": queries})
+    cuts = range(0, len(text), LONGEST)
+    return {f"{VARIABLE}_{number}": text[i : i + LONGEST] for number, i in enumerate(cuts)}
+
+
+def _read() -> dict[str, Any] | None:
+    """What the variables say, which are taken away; None if there are none."""
+    pieces: list[str] = []
+    while (piece := os.environ.pop(f"{VARIABLE}_{len(pieces)}", None)) is not None:
+        pieces.append(piece)
+    told: dict[str, Any] | None = json.loads("".join(pieces)) if pieces else None
+    return told
 
 
 def warm(wanted: Mapping[str, Any]) -> None:
     """Make ready what a :class:`Warmth`, as plain data, asks for."""
     _become_server()
     stand_in_for_main(*wanted["main"])
-    for source, query in wanted["queries"]:
-        # A scene that can't be loaded is reported by the runs that want it.
-        with contextlib.suppress(Exception):
-            make_ready(source, query)
+    for source, queries in wanted["queries"].items():
+        for query in queries:
+            # A scene that can't be loaded is reported by the runs that want it.
+            with contextlib.suppress(Exception):
+                make_ready(source, query)
     with _silence():
         for name, settings in wanted["planners"]:
             _warm_planner(name, json.loads(settings), wanted["limit_s"], wanted["memory_bytes"])
@@ -159,6 +183,6 @@ def _silence() -> Iterator[None]:
         os.close(nowhere)
 
 
-if VARIABLE in os.environ:
-    # Only the server's own environment has it: children and their children start without.
-    warm(json.loads(os.environ.pop(VARIABLE)))
+# Only the server's own environment has it: children and their children start without.
+if (wanted := _read()) is not None:
+    warm(wanted)

@@ -9,18 +9,24 @@ from suite.errors import ContractError, PluginError, SceneError, did_you_mean
 from suite.harness.matrix_file import (
     MatrixFile,
     PlannerEntry,
+    Queries,
+    QuerySample,
     SceneEntry,
     Source,
     WorldEntry,
     matrix_file,
     read_matrix_file,
 )
+from suite.harness.queries import chosen_queries
 from suite.planner import Budget
 from suite.plugins.discovery import PluginInfo, planner_info
+from suite.plugins.from_file import add_plugins
 from suite.plugins.settings import make_settings
 from suite.scenes.catalogue import has_scene, load_scene
-from suite.scenes.modifiers import MARK, SUFFIXES, expand_twins, split_modifiers
-from suite.scenes.scene import Scene, scene_fingerprint
+from suite.scenes.frozen import refuse_moving
+from suite.scenes.maps.folder import maps_in
+from suite.scenes.modifiers import MARK, PATHS, expand_twins, split_modifiers, with_modifiers
+from suite.scenes.scene import Query, Scene, scene_fingerprint
 from suite.simulation.settings import world_settings
 from suite.store.record import Cell, World
 from suite.typed import MisfitError, T, dataclass_of, plain
@@ -98,6 +104,7 @@ class Matrix:
     sources : what :func:`suite.scenes.catalogue.load_scene` takes, one for each of ``scenes``.
     seeds : of the scenes that have none of their own.
     scene_seeds : of each of ``scenes``.
+    queries : of each of ``scenes``, those that are run.
     worlds : (name, settings) of the worlds of each scene; none if its runs are not simulated.
     """
 
@@ -108,6 +115,7 @@ class Matrix:
     variants: tuple[Variant, ...]
     seeds: tuple[int, ...]
     scene_seeds: tuple[tuple[int, ...], ...]
+    queries: tuple[tuple[Query, ...], ...]
     limits: Limits
     worlds: tuple[tuple[tuple[str, Mapping[str, Any]], ...], ...]
 
@@ -120,11 +128,12 @@ class Matrix:
             Only the first two seeds of each scene.
         """
         wanted = [
-            (scene, source, query, world, variant, seed, number < QUICK_SEEDS)
-            for scene, source, worlds, seeds in zip(
-                self.scenes, self.sources, self.worlds, self.scene_seeds, strict=True
+            (scene, source, query, fingerprint, world, variant, seed, number < QUICK_SEEDS)
+            for scene, source, queries, worlds, seeds in zip(
+                self.scenes, self.sources, self.queries, self.worlds, self.scene_seeds, strict=True
             )
-            for query in scene.queries
+            for query in queries
+            for fingerprint in [scene_fingerprint(scene, query)]
             for world in worlds or (None,)
             for variant in self.variants
             for number, seed in enumerate(seeds)
@@ -133,8 +142,9 @@ class Matrix:
             Cell(
                 scene=scene.name,
                 scene_source=source,
-                scene_hash=scene_fingerprint(scene, query),
+                scene_hash=fingerprint,
                 query=query.name,
+                blocked=query.blocked,
                 variant=variant.name,
                 planner=variant.plugin.name,
                 distribution=variant.plugin.distribution,
@@ -145,18 +155,32 @@ class Matrix:
                 world=None if world is None else World(*world, cold=variant.cold),
                 position=position,
             )
-            for position, (scene, source, query, world, variant, seed, first) in enumerate(wanted)
+            for position, (
+                scene,
+                source,
+                query,
+                fingerprint,
+                world,
+                variant,
+                seed,
+                first,
+            ) in enumerate(wanted)
             if first or not quick
         ]
 
 
-def load_matrix(name_or_path: str | Path) -> Matrix:
+def load_matrix(name_or_path: str | Path, *, maps: Sequence[Path] = ()) -> Matrix:
     """Read a matrix and check all of it: every scene loads, every planner takes its settings.
+
+    Planners of the files that it names are known to this process from then on, and to those that it
+    starts.
 
     Parameters
     ----------
     name_or_path : str or Path
         One of the catalogue, or a file in the format of :mod:`suite.harness.matrix_file`.
+    maps : sequence of Path
+        Folders, whose maps are scenes beside those that it names.
 
     Returns
     -------
@@ -170,9 +194,14 @@ def load_matrix(name_or_path: str | Path) -> Matrix:
     path = matrix_file(name_or_path)
     source, file = read_matrix_file(path)
     seeds = _seeds(source, (), file.seeds)
-    named = _named_scenes(source, file, seeds)
-    scenes, sources = _scenes(source, [name for name, _ in named], path.parent)
+    added = [str(folder.resolve()) for folder in maps]
+    named = _named_scenes(source, file, path.parent, added, seeds)
+    scenes, sources = _scenes(source, [entry.name for entry in named], path.parent)
+    _name_plugins(source, file, path.parent)
     worlds = _worlds(source, file, scenes)
+    if not file.world:
+        for scene, entry in zip(scenes, named, strict=True):
+            _refuse_moving(source, scene, entry.name)
     return Matrix(
         name=file.name or path.stem,
         description=file.description,
@@ -180,26 +209,99 @@ def load_matrix(name_or_path: str | Path) -> Matrix:
         sources=sources,
         variants=_variants(source, file),
         seeds=seeds,
-        scene_seeds=tuple(own for _, own in named),
+        scene_seeds=tuple(entry.seeds for entry in named),
+        queries=tuple(
+            _queries(source, scene, entry) for scene, entry in zip(scenes, named, strict=True)
+        ),
         limits=_built(Limits, file.limits, source, ("limits",)),
         worlds=worlds,
     )
 
 
+@dataclass(frozen=True, slots=True)
+class _Named:
+    """A scene of a matrix.
+
+    name : of it or its file as it is written, but for twins, which are named one by one, and with
+        the robot's radius and the snapping of ends as modifiers.
+    seeds, queries : its own, or those of the whole matrix.
+    keys : where the queries are written.
+    """
+
+    name: str
+    seeds: tuple[int, ...]
+    queries: Queries | None
+    keys: tuple[str | int, ...]
+
+
 def _named_scenes(
-    source: Source, file: MatrixFile, seeds: tuple[int, ...]
-) -> list[tuple[str, tuple[int, ...]]]:
-    """The name or file of each scene as it is written, twins one by one, and its seeds."""
+    source: Source,
+    file: MatrixFile,
+    folder: Path,
+    maps: Sequence[str],
+    seeds: tuple[int, ...],
+) -> list[_Named]:
+    if not (file.scenes or maps):
+        what = "it names none. Name some, or a folder of maps with --maps."
+        raise source.error((), f"scenes: {what}")
     named = []
-    for number, entry in enumerate(file.scenes):
+    for number, entry in enumerate([*file.scenes, *maps]):
         scene = SceneEntry(entry) if isinstance(entry, str) else entry
         keys = ("scenes", number)
         own = seeds if scene.seeds is None else _seeds(source, keys, scene.seeds)
+        queries = file.queries if scene.queries is None else scene.queries
+        where = ("queries",) if scene.queries is None else (*keys, "queries")
+        radius = file.radius if scene.radius is None else scene.radius
+        snap = file.snap if scene.snap is None else scene.snap
         try:
-            named += [(twin, own) for twin in expand_twins(scene.scene)]
+            named += [
+                _Named(with_modifiers(twin, radius=radius, snap=snap), own, queries, where)
+                for name in _maps_of(scene.scene, folder)
+                for twin in expand_twins(name)
+            ]
         except SceneError as error:
             raise source.error(("scenes",), str(error)) from error
     return named
+
+
+def _maps_of(name: str, folder: Path) -> list[str]:
+    """The maps of a folder that is named as a scene, with the same modifiers; any other name."""
+    base, modifiers = split_modifiers(name)
+    if not (folder / base).is_dir() or has_scene(name):
+        return [name]
+    behind = f"{MARK}{modifiers}" if modifiers else ""
+    return [f"{path}{behind}" for path in maps_in(folder / base)]
+
+
+def _queries(source: Source, scene: Scene, entry: _Named) -> tuple[Query, ...]:
+    if isinstance(entry.queries, QuerySample):
+        _check_sample(source, entry.queries, entry.keys)
+    keys = entry.keys if entry.queries is not None else ("scenes",)
+    try:
+        return chosen_queries(scene, entry.queries)
+    except SceneError as error:
+        raise source.error(keys, str(error)) from error
+
+
+def _check_sample(source: Source, sample: QuerySample, keys: Sequence[str | int]) -> None:
+    """Refuse a sample that is of no kind, or says what its kind does not heed."""
+    if (sample.random is None) == (sample.per_stratum is None):
+        what = "give either random = 100 or per_stratum = 2, beside a seed if you like."
+        raise source.error(keys, what)
+    for key in ("min_distance", "connected"):
+        if sample.random is None and getattr(sample, key) is not None:
+            raise source.error(keys, f"{key} is for random queries. Leave it out.")
+
+
+def _refuse_moving(source: Source, scene: Scene, name: str) -> None:
+    try:
+        refuse_moving(
+            scene,
+            "Give the matrix a [[world]], in which a robot drives through it, or name the scene as "
+            f"it is at a time, standing still: {with_modifiers(name, at=0.0)}.",
+        )
+    except SceneError as error:
+        raise source.error(("scenes",), str(error)) from error
 
 
 def _scenes(
@@ -223,7 +325,7 @@ def _scene_source(entry: str, folder: Path) -> str:
         return str((folder / entry).resolve())
     base, modifiers = split_modifiers(entry)
     path = folder / base
-    is_path = path.exists() or path.suffix.lower() in SUFFIXES or len(Path(base).parts) > 1
+    is_path = path.exists() or path.suffix.lower() in PATHS or len(Path(base).parts) > 1
     # A word that is neither goes to the catalogue, which says what it has.
     if not is_path:
         return entry
@@ -273,6 +375,15 @@ def _seeds(
         return tuple(range(seeds))
     _refuse_twins(source, "seeds", seeds, keys)
     return tuple(seeds)
+
+
+def _name_plugins(source: Source, file: MatrixFile, folder: Path) -> None:
+    """Make the planners of a matrix's own files known, beside those of ``--plugin``."""
+    for number, reference in enumerate(file.plugins):
+        try:
+            add_plugins([reference], folder.resolve())
+        except PluginError as error:
+            raise source.error(("plugins", number), str(error)) from error
 
 
 def _variants(source: Source, file: MatrixFile) -> tuple[Variant, ...]:

@@ -8,6 +8,7 @@ A TOML file::
     description = "What it is for."
     scenes = ["zigzag", "my_scene.geojson"]  # catalogue names, or paths relative to this file
     seeds = 20                               # 0 to 19; or a list of seeds
+    plugins = ["mine.py"]                    # optional; as --plugin takes them, from this folder
 
     [limits]                                 # optional; see Limits
     grace_s = 10
@@ -18,13 +19,28 @@ A TOML file::
     settings = {population_size = 20}        # what is left out keeps its default
     budget = {generations = 200}             # fields of Budget; none: its own stop
 
-Every query of every scene is run with every variant and every seed.
+Every query of every scene is run with every variant and every seed. Which queries, and how large
+the robot is, may be said for all scenes, and for each by itself in its table::
+
+    radius = 0.2                             # of the robot, metres: obstacles grow by it
+    snap = true                              # ends that are not free move to the nearest free place
+    queries = "all"                          # the scene's own; the default
+    queries = ["main", "1,2:8.5,4"]          # by name, or by start and goal
+    queries = { random = 100, seed = 1, min_distance = 5.0, connected = true }
+    queries = { per_stratum = 2, seed = 1 }  # of the scene's own, so many of each of its strata
+
+Random queries are drawn uniformly from free space: pairs at least ``min_distance`` metres apart (0
+if left out) that a path joins (or any, with ``connected = false``). ``radius`` and ``snap`` are
+short for modifiers behind the scene's name, ``my_map.yaml@radius=0.2,snap=yes``.
 
 A scene may be modified, as in ``zigzag@turn=17`` (see :mod:`suite.scenes.modifiers`), and a range
 of twins stands for as many scenes. With a table in place of its name, a scene has seeds of its own,
 so that several twins need not make the matrix as many times as large::
 
     scenes = ["zigzag", { scene = "zigzag@twin=1..10", seeds = 5 }]
+
+A folder stands for all maps in it: ``scenes = ["my_maps"]``. What folder may be left to the
+command: ``kbga-bench run MATRIX --maps FOLDER`` adds it to the scenes, which then may be left out.
 
 A matrix of simulated runs names worlds. Then every scene is driven through in each of its worlds,
 and the budget is that of each single plan::
@@ -44,7 +60,7 @@ import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from msgspec import Meta, Struct
 
@@ -72,11 +88,51 @@ _Seeds = Annotated[
 _SceneName = Annotated[_Name, Meta(description="the name or the file of a scene")]
 
 
+MOST_QUERIES = 100_000
+"""That a matrix may draw in a scene: more is a mistake of typing."""
+
+_Many = Annotated[
+    int, Meta(ge=1, le=MOST_QUERIES, description=f"a whole number, 1 to {MOST_QUERIES}")
+]
+
+
+class QuerySample(_Table, frozen=True):
+    """A sample of queries, of one of two kinds.
+
+    random : so many pairs of places, drawn from free space.
+    per_stratum : so many of each stratum of the scene's own.
+    seed : of the random stream.
+    min_distance : between start and goal of a random one, metres.
+    connected : whether only random pairs are taken that a path joins.
+    """
+
+    random: _Many | None = None
+    per_stratum: _Many | None = None
+    seed: _Seed = 0
+    min_distance: Annotated[float, Meta(ge=0.0, description="metres, of 0 or more")] | None = None
+    connected: bool | None = None
+
+
+_List = Annotated[list[_Name], Meta(min_length=1)]
+Queries = Literal["all"] | _List | QuerySample
+_Queries = Annotated[
+    Queries,
+    Meta(
+        description='"all", a list of names or of x,y:x,y, or a table { random = 100, seed = 1, '
+        "min_distance = 5.0, connected = true } or { per_stratum = 2, seed = 1 }"
+    ),
+]
+_Radius = Annotated[float, Meta(ge=0.0, description="the robot's radius in metres, of 0 or more")]
+
+
 class SceneEntry(_Table, frozen=True):
-    """A scene, or a range of twins, that may have seeds of its own."""
+    """A scene, or a range of twins, that may have seeds, queries and a robot of its own."""
 
     scene: _SceneName
     seeds: _Seeds | None = None
+    queries: _Queries | None = None
+    radius: _Radius | None = None
+    snap: bool | None = None
 
 
 class WorldEntry(_Table, frozen=True):
@@ -109,18 +165,24 @@ class MatrixFile(_Table, frozen=True):
     """The whole file."""
 
     seeds: _Seeds
+    planner: _Planners
     scenes: Annotated[
         list[_SceneName | SceneEntry],
         Meta(
-            min_length=1,
-            description="a list of names, files, or tables { scene = ..., seeds = ... }, "
-            "at least one",
+            description="a list of names, files, folders of maps, or tables { scene = ..., "
+            "seeds = ..., queries = ..., radius = ..., snap = ... }"
         ),
-    ]
-    planner: _Planners
+    ] = []
+    queries: _Queries | None = None
+    radius: _Radius | None = None
+    snap: bool = False
     world: _Worlds = []
     name: _Name | None = None
     description: str = ""
+    plugins: Annotated[
+        list[_Name],
+        Meta(description='a list of planners\' files: "FILE.py", "FILE.py:CLASS", "MODULE:CLASS"'),
+    ] = []
     limits: dict[str, Any] = {}
 
 
@@ -213,7 +275,7 @@ def outline(name: str) -> dict[str, Any]:
     """What a matrix of the catalogue is for, and its numbers of scenes, planners, seeds and runs.
 
     It is read from the file alone: to check a matrix is to draw all of its scenes and to import all
-    of its planners. Each of its scenes has one query.
+    of its planners. A scene whose queries are not counted there is taken to have one.
 
     Examples
     --------
@@ -222,8 +284,12 @@ def outline(name: str) -> dict[str, Any]:
     """
     _, file = read_matrix_file(matrix_file(name))
     entries = [SceneEntry(e) if isinstance(e, str) else e for e in file.scenes]
-    each = {twin: e.seeds or file.seeds for e in entries for twin in expand_twins(e.scene)}
-    runs = sum(_count(own) * _worlds(file, scene) for scene, own in each.items())
+    each = {
+        twin: _count(e.seeds or file.seeds) * _queries(e.queries or file.queries)
+        for e in entries
+        for twin in expand_twins(e.scene)
+    }
+    runs = sum(own * _worlds(file, scene) for scene, own in each.items())
     return {
         "description": file.description,
         "scenes": len(each),
@@ -235,6 +301,12 @@ def outline(name: str) -> dict[str, Any]:
 
 def _count(own: int | list[int]) -> int:
     return own if isinstance(own, int) else len(own)
+
+
+def _queries(wanted: Queries | None) -> int:
+    if isinstance(wanted, list):
+        return len(wanted)
+    return wanted.random or 1 if isinstance(wanted, QuerySample) else 1
 
 
 def _worlds(file: MatrixFile, scene: str) -> int:

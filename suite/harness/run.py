@@ -14,6 +14,7 @@ from typing import Self
 
 import numpy as np
 
+from suite.harness.cell import refused
 from suite.harness.cluster.executors import Coming, Crew, crew, record_of
 from suite.harness.cluster.worker import Answer
 from suite.harness.fork_server import Warmth
@@ -193,18 +194,33 @@ def run_matrix(
     progress = Progress.at_first(cells, missing, there)
     on_progress(progress)
     store.want(matrix.name, cells)
+    store.keep_scenes({scene.name: scene for scene in matrix.scenes}, cells)
 
     def keep(record: RunRecord) -> None:
         store.add(record, replace=record.cell.key in there)
         progress.count(record)
 
-    if missing:
+    if any(cell.blocked is not None for cell in missing):
+        _refuse(matrix, missing, store, keep)
+        on_progress(progress)
+    asked = [cell for cell in missing if cell.blocked is None]
+    if asked:
         patience = Patience(patience_s)
-        with session(matrix, missing, store, executor, jobs, patience) as own:
-            run_each(missing, own, keep, progress, on_progress)
+        with session(matrix, asked, store, executor, jobs, patience) as own:
+            run_each(asked, own, keep, progress, on_progress)
         progress.waited_s = patience.waited_s
     progress.contended = len(contended_cells(cells, store))
     return progress
+
+
+def _refuse(
+    matrix: Matrix, cells: Sequence[Cell], store: Store, keep: Callable[[RunRecord], None]
+) -> None:
+    """Keep a row for each cell whose query can't be asked, without a process and a planner."""
+    store.begin_session(provenance(matrix.name, set()) | {"pid": os.getpid()})
+    for cell in cells:
+        if cell.blocked is not None:
+            keep(refused(cell, cell.blocked))
 
 
 @contextmanager
@@ -218,7 +234,8 @@ def session(
 ) -> Iterator[Crew]:
     """Those who run these cells; the store is told where the rows come from that follow."""
     limits = matrix.limits
-    with crew(executor, jobs, patience, limits, warmth_for(cells, limits)) as own:
+    scenes = dict(zip(matrix.sources, matrix.scenes, strict=True))
+    with crew(executor, jobs, patience, limits, warmth_for(cells, limits), scenes) as own:
         distributions = {(cell.distribution, cell.version) for cell in cells}
         place = {"pid": os.getpid(), **own.provenance()}
         store.begin_session(provenance(matrix.name, distributions) | place)

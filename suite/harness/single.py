@@ -1,18 +1,22 @@
 """A single run as ``plan`` and ``simulate`` ask for it: its cell, and its record in other words."""
 
-from collections.abc import Iterable, Mapping
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from statistics import median
 from typing import Any
 
-from suite.errors import KbgaBenchError
+from suite.errors import KbgaBenchError, SceneError
 from suite.geometry.coordinates import printed
 from suite.harness.prepared import planner_class, prepared_scene
+from suite.harness.queries import ALL
 from suite.planner import Budget, PlanStatus
 from suite.plugins.discovery import planner_info
 from suite.plugins.settings import make_settings
 from suite.scenes.exact import shortest_path
-from suite.scenes.scene import scene_fingerprint
+from suite.scenes.frozen import refuse_moving
+from suite.scenes.scene import Scene, scene_fingerprint
 from suite.seeds import check_seed
 from suite.simulation.record import from_data
 from suite.simulation.run import Simulation
@@ -63,6 +67,8 @@ def cell_for(
     """
     check_seed(seed)
     scene = prepared_scene(source)
+    if world is None:
+        _refuse_moving(scene)
     wanted = scene.query(query)
     found = planner_class(planner)
     plugin = planner_info(planner)
@@ -80,6 +86,57 @@ def cell_for(
         seed=seed,
         world=world,
     )
+
+
+_POINT = re.compile(r"\s*[-+.0-9eE]+\s*,\s*[-+.0-9eE]+\s*")
+
+
+def _refuse_moving(scene: Scene) -> None:
+    refuse_moving(
+        scene,
+        "Let a robot drive through it with `simulate`, or take it as it is at a time, standing "
+        "still, with --at, in seconds.",
+    )
+
+
+def query_names(
+    source: str, query: str | None = None, start: str | None = None, goal: str | None = None
+) -> list[str]:
+    """The queries that the options of a command ask for.
+
+    Parameters
+    ----------
+    source : str
+        Catalogue name or file of the scene.
+    query : str, optional
+        A name, or ``all``. Default: the first of the scene.
+    start, goal : str, optional
+        ``x,y`` in metres, both or neither, in place of a name.
+
+    Raises
+    ------
+    KbgaBenchError
+        If they don't go together, or the scene has none of that name.
+    """
+    scene = prepared_scene(source)
+    if start is not None or goal is not None:
+        return [scene.query(_between(query, start, goal)).name]
+    if query == ALL and scene.queries:
+        return [each.name for each in scene.queries]
+    return [scene.query(None if query == ALL else query).name]
+
+
+def _between(query: str | None, start: str | None, goal: str | None) -> str:
+    """The name of the query from a start to a goal."""
+    if start is None or goal is None or query is not None:
+        raise KbgaBenchError(
+            "--start and --goal are given together, and in place of --query: "
+            "--start 1,2 --goal 8.5,4."
+        )
+    for option, text in (("--start", start), ("--goal", goal)):
+        if not _POINT.fullmatch(text):
+            raise KbgaBenchError(f"{option} {text}: write x,y in metres, as {option} 1.5,-2.")
+    return f"{start}:{goal}".replace(" ", "")
 
 
 def world_for(
@@ -139,6 +196,7 @@ def as_data(record: RunRecord) -> dict[str, Any]:
     return {
         "scene": record.cell.scene,
         "query": record.cell.query,
+        "moved": list(_moved(record)),
         **_asked_and_answered(record),
         "cost": record.cost,
         "claimed_cost": record.claimed_cost,
@@ -153,6 +211,8 @@ def as_data(record: RunRecord) -> dict[str, Any]:
         "cpu_s": record.cpu_s,
         "contended": record.contended,
         "time_to_best_s": record.time_to_best_s,
+        "prepare_s": record.prepare_s,
+        "exact_s": record.exact_s,
         "events": [[event.wall_s, event.cost] for event in record.improvements],
         "path": None if record.path is None else record.path.tolist(),
     }
@@ -188,15 +248,27 @@ def exact_as_data(source: str, query: str | None = None) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``status`` is solved or infeasible; ``optimum`` and ``path`` are null without a path.
+        ``status`` is solved, infeasible, or refused where an end is not free, for a ``reason``;
+        ``optimum`` and ``path`` are null without a path. ``moved`` is by how many metres start and
+        goal were moved to free space.
+
+    Raises
+    ------
+    SceneError
+        If the scene is dynamic, or has no such query.
     """
     scene = prepared_scene(source)
+    _refuse_moving(scene)
     wanted = scene.query(query)
+    asked = {"scene": scene.name, "query": wanted.name, "moved": list(wanted.moved)}
+    if wanted.blocked is not None:
+        nothing = {"optimum": None, "path": None, "checks": 0}
+        return asked | {"status": str(PlanStatus.REFUSED), "reason": wanted.blocked} | nothing
     found = shortest_path(scene, wanted)
     return {
-        "scene": scene.name,
-        "query": wanted.name,
+        **asked,
         "status": str(PlanStatus.INFEASIBLE if found.path is None else PlanStatus.SOLVED),
+        "reason": None,
         "optimum": None if found.path is None else found.length,
         "path": None if found.path is None else found.path.tolist(),
         "checks": found.checks,
@@ -205,15 +277,74 @@ def exact_as_data(source: str, query: str | None = None) -> dict[str, Any]:
 
 def exact_as_text(found: Mapping[str, Any]) -> str:
     """What :func:`exact_as_data` gives, in a few lines for people."""
+    lines = [exact_as_line(found), *_moved_in_words(found["moved"])]
+    if found["path"] is not None:
+        lines.append("  path  " + " ".join(printed(x, y) for x, y in found["path"]))
+    return "\n".join(lines)
+
+
+def exact_as_line(found: Mapping[str, Any]) -> str:
+    """What :func:`exact_as_data` gives, on one line and without the path."""
+    label = f"{found['scene']} / {found['query']}"
+    if found["reason"] is not None:
+        return f"{label}: {found['status']}, {found['reason']}"
     if found["path"] is None:
-        return f"{found['scene']} / {found['query']}: infeasible, there is no path."
-    waypoints = " ".join(printed(x, y) for x, y in found["path"])
-    return f"{found['scene']} / {found['query']}: {found['optimum']:.9g} m\n  path  {waypoints}"
+        return f"{label}: infeasible, there is no path."
+    return f"{label}: {found['optimum']:.9g} m"
+
+
+def exact_summary(found: Sequence[Mapping[str, Any]]) -> str:
+    """How many of several queries have a path, on one line."""
+    return _counted([one["status"] for one in found])
+
+
+def summary(records: Sequence[RunRecord]) -> str:
+    """How the runs of several queries ended, and how far from the optimum, on one line."""
+    gaps = [record.gap for record in records if record.gap is not None]
+    text = _counted([str(record.status) for record in records])
+    if not gaps:
+        return text
+    return f"{text} Gap: median {100.0 * median(gaps):.3f} %, worst {100.0 * max(gaps):.3f} %."
+
+
+def _counted(statuses: Sequence[str]) -> str:
+    told = ", ".join(f"{number} {status}" for status, number in Counter(statuses).items())
+    return f"{len(statuses)} {'query' if len(statuses) == 1 else 'queries'}: {told}."
+
+
+def _moved_in_words(moved: Sequence[float]) -> list[str]:
+    return [
+        f"  moved        the {end} by {by:.9g} m, to free space"
+        for end, by in zip(("start", "goal"), moved, strict=True)
+        if by > 0.0
+    ]
+
+
+def as_line(record: RunRecord) -> str:
+    """What came of a run, on one line for people."""
+    words = [str(record.status)]
+    if record.cost is not None:
+        words.append(f"{record.cost:.3f} m")
+    if record.gap is not None:
+        words.append(f"gap {100.0 * record.gap:.3f} %")
+    if record.wall_s is not None:
+        words.append(f"{1e3 * record.wall_s:.2f} ms")
+    if record.reason is not None:
+        words.append(record.reason)
+    return f"{record.cell.label}: {', '.join(words)}"
+
+
+def _moved(record: RunRecord) -> tuple[float, float]:
+    """Metres by which start and goal of a run were moved to free space."""
+    try:
+        return prepared_scene(record.cell.scene_source).query(record.cell.query).moved
+    except SceneError:  # that it is not as it was, or not there any more, the row says
+        return 0.0, 0.0
 
 
 def as_text(record: RunRecord) -> str:
     """What came of a run, in a few lines for people."""
-    lines = [f"{record.cell.label}: {record.status}"]
+    lines = [f"{record.cell.label}: {record.status}", *_moved_in_words(_moved(record))]
     if record.reason is not None:
         lines.append(f"  reason       {record.reason}")
     if record.cost is not None:

@@ -4,7 +4,6 @@ import hashlib
 import json
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +37,6 @@ from suite.report.statistics.clock import fair
 from suite.report.statistics.over_queries import hardest, only_maps, query_measures
 from suite.report.table import Table
 from suite.report.tables.alignment import without_repeats
-from suite.scenes.catalogue import load_scene, scene_as_it_was
 from suite.scenes.scene import Query, Scene
 from suite.simulation.record import from_data
 from suite.store.read import (
@@ -50,6 +48,7 @@ from suite.store.read import (
     read_simulation,
     read_snapshots,
 )
+from suite.store.scenes import KeptScenes
 
 MANIFEST = "manifest.json"
 
@@ -87,7 +86,8 @@ def write_results(
     Raises
     ------
     KbgaBenchError
-        If the store holds no runs, a scene has changed since, or a file can't be written.
+        If the store holds no runs, neither keeps a scene of them nor finds it in its file, or a
+        file can't be written.
     """
     need_pyarrow()
     runs = read_runs(store)
@@ -96,13 +96,14 @@ def write_results(
     current = newest(runs)
     check_optima(current)
     shown = fair(without_repeats(current[~is_blocked(current)]))
-    scenes = _scenes(shown)
+    kept = KeptScenes(store)
+    scenes = _scenes(shown, kept)
     folder = made_folder(directory)
     tables = read_tables(store)
     files = write_tables([t for t in tables if not t.detail], folder, TableFormat.MARKDOWN)
     files += write_tables(tables, folder, TableFormat.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
-    for name, figure in _figures(store, shown, scenes, leave_out):
+    for name, figure in _figures(store, shown, kept, scenes, leave_out):
         file = folder / f"{name}{figures.suffix}"
         save(figure, file)
         files.append(file)
@@ -131,20 +132,16 @@ def write_tables(tables: Sequence[Table], directory: Path, style: TableFormat) -
     return files
 
 
-def _scenes(runs: pd.DataFrame) -> list[tuple[Scene, Query]]:
+def _scenes(runs: pd.DataFrame, kept: KeptScenes) -> list[tuple[Scene, Query]]:
     """Scenes and queries of the runs, as they were when these were made."""
-    wanted = runs[["scene_source", "query", "scene_hash"]].drop_duplicates()
-    # A map has hundreds of queries, and takes a while to load.
-    load = cache(load_scene)
-    return [
-        scene_as_it_was(source, query, fingerprint, load=load)
-        for source, query, fingerprint in wanted.itertuples(index=False)
-    ]
+    wanted = runs.drop_duplicates(["scene", "query", "scene_hash"])
+    return [kept.of(row) for row in wanted.to_dict("records")]
 
 
 def _figures(
     store: Path,
     current: pd.DataFrame,
+    kept: KeptScenes,
     scenes: list[tuple[Scene, Query]],
     leave_out: Collection[Part],
 ) -> Iterator[tuple[str, Figure]]:
@@ -162,7 +159,7 @@ def _figures(
     yield from _map_figures(only_maps(steps), paths, scenes)
     if not driven.empty:
         yield REPLANNING, plot_replanning(driven, read_replans(store))
-        yield from _snapshot_sheets(driven, store)
+        yield from _snapshot_sheets(driven, store, kept)
 
 
 def _comparisons(steps: Steps) -> Iterator[tuple[str, Figure]]:
@@ -213,10 +210,12 @@ def _map_figures(
         yield scene.name, plot_map(scene, hard, planners, here["query"].nunique())
 
 
-def _snapshot_sheets(runs: pd.DataFrame, store: Path) -> Iterator[tuple[str, Figure]]:
+def _snapshot_sheets(
+    runs: pd.DataFrame, store: Path, kept: KeptScenes
+) -> Iterator[tuple[str, Figure]]:
     """A sheet of the first run of the first planner in each world."""
     for row in runs.drop_duplicates(["scene_source", "world"]).to_dict("records"):
-        scene, _ = scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])
+        scene, _ = kept.of(row)
         data = read_simulation(store, row["key"])
         figure = plot_snapshots(from_data(scene, data))
         heading(figure, f"{data['scene']}, {row['world']}: {row['variant']}")

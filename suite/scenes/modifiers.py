@@ -1,4 +1,4 @@
-"""Scene modifiers: a scene that is turned, shifted or scaled, by the way its name is spelled.
+"""Scene modifiers: a scene that is moved, grown or read otherwise, by the way its name is spelled.
 
 ``zigzag@turn=17,shift=0.37`` is zigzag turned by 17 degrees and moved 0.37 m to the right. Behind
 the ``@`` stand, in any order and each at most once:
@@ -14,6 +14,17 @@ the ``@`` stand, in any order and each at most once:
     for each scene. A planner that finds good paths only where walls lie well for it is found out
     by twins.
 
+``at=T``
+    Seconds: a dynamic scene as it is then, standing still.
+``radius=R``
+    Of the robot, metres: the obstacles grow by it, after all else, and the workspace shrinks.
+``snap=yes``
+    Starts and goals that are not free are moved to the nearest place that is.
+
+And of maps alone, how they are read, see :class:`suite.scenes.maps.options.MapOptions`:
+``unknown=free`` or ``unknown=occupied``, ``resolution=METRES`` of a pixel, ``threshold=SHARE``,
+``layer=NAME`` and ``simplify=METRES``.
+
 Workspace, obstacles, starts and goals move as one: the problem stays the same, and so does its
 optimum, but for the scale. Only what a planner lays over the plane itself, a lattice say, meets
 the obstacles elsewhere; as it may be laid from the workspace on, it is turning that counts.
@@ -22,19 +33,24 @@ the obstacles elsewhere; as it may be laid from the workspace on, it is turning 
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 from zlib import crc32
 
 import numpy as np
 
 from suite.errors import SceneError, did_you_mean
 from suite.geometry.tolerances import LARGEST
+from suite.scenes.maps.options import OPTIONS, MapOptions, Unknown
+from suite.scenes.maps.suffixes import MAP_SUFFIXES
 
 SUFFIXES = (".geojson", ".json")
-"""Of scene files, by which a name is told from a path."""
+"""Of scene files."""
+PATHS = (*SUFFIXES, *MAP_SUFFIXES)
+"""Suffixes by which a name is told from a path."""
 MARK = "@"
-KEYS = ("turn", "shift", "scale", "twin")
+KEYS = ("turn", "shift", "scale", "twin", "at", "radius", "snap", *OPTIONS)
 FURTHEST = 1.0
 """Metres by which a twin is shifted along each axis, at the most."""
 
@@ -49,12 +65,25 @@ class Modifiers:
     turn : degrees, counter-clockwise.
     shift : (dx, dy), metres.
     scale : factor on lengths, above 0.
+    at : seconds, at which a dynamic scene is to stand still; None: it goes on.
+    radius : of the robot, metres; None if nothing is said of it.
+    snap : whether ends that are not free are moved to free space.
+    options : how the map is read.
     """
 
     text: str
     turn: float = 0.0
     shift: tuple[float, float] = (0.0, 0.0)
     scale: float = 1.0
+    at: float | None = None
+    radius: float | None = None
+    snap: bool = False
+    options: MapOptions = field(default_factory=MapOptions)
+
+    @property
+    def moves(self) -> bool:
+        """Whether anything comes to lie elsewhere."""
+        return (self.turn, self.shift, self.scale) != (0.0, (0.0, 0.0), 1.0)
 
 
 def split_modifiers(name: str) -> tuple[str, str]:
@@ -70,7 +99,7 @@ def split_modifiers(name: str) -> tuple[str, str]:
     (('rooms@home/a.json', 'twin=3'), ('rooms@home/a.json', ''))
     """
     base, mark, text = name.rpartition(MARK)
-    is_path = len(Path(text).parts) > 1 or Path(text).suffix.lower() in SUFFIXES
+    is_path = len(Path(text).parts) > 1 or Path(text).suffix.lower() in PATHS
     if not mark or is_path or Path(name).exists():
         return name, ""
     if not text or not base:
@@ -79,6 +108,36 @@ def split_modifiers(name: str) -> tuple[str, str]:
             f"Write it like zigzag{MARK}turn=17, or leave the '{MARK}' out."
         )
     return base, text
+
+
+def with_modifiers(name: str, **values: object) -> str:
+    """The name of a scene with more modifiers behind it; those of no value are left out.
+
+    Parameters
+    ----------
+    name : str
+        Of a scene, or a file, modified or not.
+    values
+        By the name of a modifier: a number, a text, True for ``yes``; None and False leave it out.
+
+    Examples
+    --------
+    >>> with_modifiers("maze", radius=0.5), with_modifiers("maze@turn=3", radius=1.0, snap=True)
+    ('maze@radius=0.5', 'maze@turn=3,radius=1,snap=yes')
+    >>> with_modifiers("maze", radius=None, snap=False)
+    'maze'
+    """
+    said = {k: _briefly(v) for k, v in values.items() if v is not None and v is not False}
+    text = ",".join(f"{key}={value}" for key, value in said.items())
+    mark = "," if split_modifiers(name)[1] else MARK
+    return f"{name}{mark}{text}" if text else name
+
+
+def _briefly(value: object) -> str:
+    if value is True:
+        return "yes"
+    # Options are parsed to floats, and 1.0 is written 1.
+    return np.format_float_positional(value, trim="-") if isinstance(value, float) else str(value)
 
 
 def parse_modifiers(text: str, where: str) -> Modifiers:
@@ -103,17 +162,27 @@ def parse_modifiers(text: str, where: str) -> Modifiers:
 
     Examples
     --------
-    >>> parse_modifiers("shift=0.37,turn=17", "zigzag")
-    Modifiers(text='shift=0.37,turn=17', turn=17.0, shift=(0.37, 0.0), scale=1.0)
+    >>> found = parse_modifiers("shift=0.37,turn=17", "zigzag")
+    >>> found.text, found.turn, found.shift, found.scale, found.radius
+    ('shift=0.37,turn=17', 17.0, (0.37, 0.0), 1.0, None)
     """
     pairs = _pairs(text, where)
     turn = _number(pairs["turn"], "turn", where) if "turn" in pairs else 0.0
     shift = _shift(pairs["shift"], where) if "shift" in pairs else (0.0, 0.0)
-    scale = _scale(pairs["scale"], where) if "scale" in pairs else 1.0
+    scale = _above_zero(pairs["scale"], "scale", where) if "scale" in pairs else 1.0
     if "twin" in pairs:
         angle, dx, dy = _drawn(_seed(pairs["twin"], where))
         turn, shift = turn + angle, (shift[0] + dx, shift[1] + dy)
-    return Modifiers(",".join(f"{k}={v}" for k, v in pairs.items()), turn, shift, scale)
+    return Modifiers(
+        ",".join(f"{k}={v}" for k, v in pairs.items()),
+        turn,
+        shift,
+        scale,
+        _not_negative(pairs["at"], "at", where) if "at" in pairs else None,
+        _not_negative(pairs["radius"], "radius", where) if "radius" in pairs else None,
+        "snap" in pairs and _yes(pairs["snap"], "snap", where),
+        _options({key: value for key, value in pairs.items() if key in OPTIONS}, where),
+    )
 
 
 def _pairs(text: str, where: str) -> Mapping[str, str]:
@@ -136,6 +205,14 @@ _EXAMPLES = {
     "shift": "shift=0.37 or shift=0.37:-0.21, in metres",
     "scale": "scale=1.0137, above 0",
     "twin": "twin=3, a whole number of 0 or more",
+    "at": "at=2.5, in seconds, of 0 or more",
+    "radius": "radius=0.2, in metres, of 0 or more",
+    "snap": "snap=yes, or leave it out",
+    "unknown": "unknown=occupied or unknown=free",
+    "resolution": "resolution=0.05, metres of a pixel, above 0",
+    "threshold": "threshold=0.65, the share of black from which a pixel is occupied, above 0",
+    "layer": "layer=buildings, its name",
+    "simplify": "simplify=0.1, metres, above 0",
 }
 
 
@@ -157,11 +234,40 @@ def _shift(value: str, where: str) -> tuple[float, float]:
     return dx, dy
 
 
-def _scale(value: str, where: str) -> float:
-    scale = _number(value, "scale", where)
-    if scale <= 0.0:
-        raise SceneError(f"{where}: scale is '{value}'. Write {_EXAMPLES['scale']}.")
-    return scale
+def _not_negative(value: str, key: str, where: str) -> float:
+    number = _number(value, key, where)
+    if number < 0.0:
+        raise SceneError(f"{where}: {key} is '{value}'. Write {_EXAMPLES[key]}.")
+    return number
+
+
+def _above_zero(value: str, key: str, where: str) -> float:
+    number = _number(value, key, where)
+    if number <= 0.0:
+        raise SceneError(f"{where}: {key} is '{value}'. Write {_EXAMPLES[key]}.")
+    return number
+
+
+def _yes(value: str, key: str, where: str) -> bool:
+    if value != "yes":
+        raise SceneError(f"{where}: {key} is '{value}'. Write {_EXAMPLES[key]}.")
+    return True
+
+
+def _options(given: Mapping[str, str], where: str) -> MapOptions:
+    words = ("unknown", "layer")
+    read: dict[str, Any] = {
+        key: value if key in words else _above_zero(value, key, where)
+        for key, value in given.items()
+    }
+    if "unknown" in given:
+        try:
+            read["unknown"] = Unknown(given["unknown"])
+        except ValueError:
+            raise SceneError(
+                f"{where}: unknown is '{given['unknown']}'. Write {_EXAMPLES['unknown']}."
+            ) from None
+    return MapOptions(**read)
 
 
 def _seed(value: str, where: str) -> int:

@@ -6,7 +6,9 @@ already in the obstacles (paper section II-A), or are added by ``inflate``.
 
 import hashlib
 import json
+import re
 import warnings
+from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -18,7 +20,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 from shapely.affinity import translate
-from shapely.geometry import Polygon
+from shapely.geometry import MultiPolygon, Polygon
 
 from suite.errors import SceneError
 from suite.geometry.arrangement import Arrangement, arrange
@@ -26,8 +28,10 @@ from suite.geometry.coordinates import Coordinates, coordinates_of, printed
 from suite.geometry.coverage import left_open
 from suite.geometry.growth import grown, shrunk
 from suite.geometry.kernels import PARTS, ObstacleArrays
+from suite.geometry.mesh import Mesh, mesh_of
 from suite.geometry.tolerances import LARGEST
 from suite.scenes.dynamics import Dynamics, as_text
+from suite.scenes.free_space import free_regions, nearest_free
 from suite.scenes.polygons import as_polygon, check_polygon, check_width
 
 DEFAULT_QUERY = "main"
@@ -35,6 +39,13 @@ DEFAULT_QUERY = "main"
 COARSEST = 1e-6
 """Widest grid that a scene may have, as a share of the workspace's larger side: lengths of paths
 are compared to this."""
+
+
+MOST_NAMES = 12
+"""Queries that are named in an error: a map may have thousands."""
+
+_NUMBER = r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?)"
+_TWO_POINTS = re.compile(rf"{_NUMBER},{_NUMBER}:{_NUMBER},{_NUMBER}")
 
 
 class SceneWarning(UserWarning):
@@ -47,11 +58,18 @@ class Query:
 
     name : str, unique in its scene.
     start, goal : (2,) float64, metres, read-only.
+    blocked : why it can't be asked: an end that is not in free space; None if both are. No planner
+        is run on it.
+    stratum : the part of a set of queries that it belongs to, of a similar difficulty; or None.
+    moved : metres by which start and goal were moved to free space.
     """
 
     name: str
     start: NDArray[np.float64]
     goal: NDArray[np.float64]
+    blocked: str | None = None
+    stratum: str | None = None
+    moved: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,9 +100,11 @@ class Scene:
     workspace : Polygon without holes, metres.
     obstacles : tuple of Obstacle, inside the workspace, but for those that move, whose drawing may
         stick out; they may touch and overlap.
-    queries : tuple of Query, at least one.
+    queries : tuple of Query; none in a map that says nothing of where to go.
     properties : read-only mapping, what the scene file says about itself.
     path : the file that the scene came from, or None.
+    radius : of the robot that the obstacles were grown by, metres.
+    snaps : whether ends of queries that are not free are moved to the nearest place that is.
     """
 
     name: str
@@ -93,10 +113,13 @@ class Scene:
     queries: tuple[Query, ...]
     properties: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     path: Path | None = None
+    radius: float = 0.0
+    snaps: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
-        """All but the arrangement: its arrays would come back writable, another type to numba."""
-        state = {k: v for k, v in self.__dict__.items() if k != "arrangement"}
+        """All but what is made of it: arrays would come back writable, another type to numba."""
+        made = ("arrangement", "at_first", "regions", "mesh")
+        state = {k: v for k, v in self.__dict__.items() if k not in made}
         return state | {"properties": dict(self.properties)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -115,9 +138,24 @@ class Scene:
         """The plane divided into free space, obstacle groups and the frame."""
         return arrange(self.workspace, [p for o in self.obstacles for p in self.closed_by(o)])
 
+    @cached_property
+    def mesh(self) -> Mesh | None:
+        """Free space as triangles, for the exact solver; None if it can't be cut into any."""
+        return mesh_of(self.arrangement.free, self.coordinates)
+
     def closed_by(self, obstacle: Obstacle) -> list[Polygon]:
         """What an obstacle closes of the workspace; one that moves is cut at the border."""
         return _inside(self.workspace, obstacle.polygon, obstacle.moves, self.coordinates)
+
+    @cached_property
+    def at_first(self) -> "Scene":
+        """The static scene that it is at time 0: itself, if it is static."""
+        return scene_at(self, 0.0) if self.is_dynamic else self
+
+    @cached_property
+    def regions(self) -> MultiPolygon:
+        """The parts of free space: between two of them there is no path."""
+        return free_regions(self.arrangement.solid)
 
     @property
     def arrays(self) -> ObstacleArrays:
@@ -155,18 +193,36 @@ class Scene:
     def query(self, name: str | None = None) -> Query:
         """The query of that name, or the first one.
 
+        Parameters
+        ----------
+        name : str, optional
+            Of one of its queries, or any two points as ``x,y:x,y`` (start, goal, metres).
+
         Raises
         ------
         SceneError
-            If there is no query of that name.
+            If there is none.
+
+        Examples
+        --------
+        >>> make_scene("hall", shapely.box(0, 0, 9, 9), [], {}).query("1,1:8,2.5").goal.tolist()
+        [8.0, 2.5]
         """
-        if name is None:
-            return self.queries[0]
-        for query in self.queries:
-            if query.name == name:
+        for query in self.queries if name is not None else self.queries[:1]:
+            if query.name == name or name is None:
                 return query
-        names = ", ".join(q.name for q in self.queries)
-        raise SceneError(f"{self.name}: no query '{name}'. It has: {names}.")
+        found = None if name is None else _TWO_POINTS.fullmatch(name)
+        if name is not None and found is not None:
+            x, y, to_x, to_y = (float(number) for number in found.groups())
+            query = _as_query(self.name, name, ((x, y), (to_x, to_y)), self.coordinates)
+            return _asked(self.name, self, query)
+        names = ", ".join(q.name for q in self.queries[:MOST_NAMES])
+        more = len(self.queries) - MOST_NAMES
+        raise SceneError(
+            f"{self.name}: no query{f' {name!r}' if name else ''}. "
+            + (f"It has: {names}{f' and {more} more' if more > 0 else ''}. " if names else "")
+            + "Any two points are one: x,y:x,y for start and goal, in metres."
+        )
 
     def stored_optimum(self, query: Query) -> float | None:
         """The exact optimum that the scene file states for a query, metres; None if it has none."""
@@ -188,6 +244,9 @@ def make_scene(
     properties: Mapping[str, Any] | None = None,
     path: Path | None = None,
     inflate: float = 0.0,
+    strata: Mapping[str, str] | None = None,
+    keep_blocked: bool = False,
+    grown_by: float = 0.0,
 ) -> Scene:
     """Check and normalise the pieces of a scene, and put them together.
 
@@ -201,13 +260,19 @@ def make_scene(
         What sticks out of the workspace is cut off, with a :class:`SceneWarning`. Vertices are
         listed in order, either way round; the last is joined to the first.
     queries : mapping from name to (start, goal), or one such pair
-        Points (2,), metres. A pair alone is the query ``main``.
+        Points (2,), metres. A pair alone is the query ``main``; none are none.
     properties : mapping, optional
         Kept with the scene as they are, but for the optima, which hold for a robot of no size.
     path : Path, optional
         The file that the pieces came from; named in errors.
     inflate : float
-        Radius of the robot, metres: obstacles grow by it and the workspace shrinks by it.
+        Radius of the robot, metres: obstacles grow by it and the workspace shrinks by it. Queries
+        whose ends are not free then are kept, and blocked.
+    strata : mapping from name of a query to name of its stratum, optional
+    keep_blocked : bool
+        Keep queries whose ends are not free at time 0, blocked, whatever the radius.
+    grown_by : float
+        Radius of the robot by which the pieces have grown already, metres.
 
     Returns
     -------
@@ -254,35 +319,38 @@ def make_scene(
     room, named = _normalise(where, room, named, inflate)
     coordinates = coordinates_of(room.bounds)
     ends = queries if isinstance(queries, Mapping) else {DEFAULT_QUERY: queries}
-    if not ends:
-        raise SceneError(
-            f"{where}: no start. Add a feature of role 'start' and one of role 'goal'."
-        )
+    strata = strata or {}
     scene = Scene(
         name=name,
         workspace=room,
         obstacles=tuple(named),
-        queries=tuple(_as_query(where, key, pair, coordinates) for key, pair in ends.items()),
+        queries=tuple(
+            replace(_as_query(where, key, pair, coordinates), stratum=strata.get(key))
+            for key, pair in ends.items()
+        ),
         properties=MappingProxyType(_still_true(properties or {}, inflate)),
         path=path,
+        radius=grown_by + inflate,
     )
     _check_closed(where, scene)
-    # What comes upon an end later is what dynamic scenes are for: a hit, or a goal to wait for.
-    first = scene_at(scene, 0.0) if scene.is_dynamic else scene
-    for query in scene.queries:
-        _check_free(where, first, f"start of query '{query.name}'", query.start)
-        _check_free(where, first, f"goal of query '{query.name}'", query.goal)
+    asked = tuple(_asked(where, scene, query) for query in scene.queries)
+    for query in asked:
+        if query.blocked is not None and not (keep_blocked or scene.radius > 0.0):
+            raise SceneError(query.blocked)
+    # Not a copy: the arrangement, which is kept with the scene, took its time.
+    object.__setattr__(scene, "queries", asked)
     return scene
 
 
 def _still_true(properties: Mapping[str, Any], inflate: float) -> dict[str, Any]:
     """The properties without what holds for a point only, if the robot is none."""
-    return {k: v for k, v in properties.items() if inflate == 0.0 or k != "optimum"}
+    of_a_point = ("optimum", "published", "published_as")
+    return {k: v for k, v in properties.items() if inflate == 0.0 or k not in of_a_point}
 
 
 def _check_unique(where: str, what: str, names: Sequence[str]) -> None:
-    for name in names:
-        if names.count(name) > 1:
+    for name, count in Counter(names).items():
+        if count > 1:
             raise SceneError(
                 f"{where}: two {what} are named '{name}'. Give each a name of its own."
             )
@@ -322,15 +390,15 @@ def _normalise(
             )
         room = left
     # A vertex computed on a slanted border lies 1e-16 beside it: that does not stick out.
-    reach = shapely.transform(room, coordinates.local).buffer(coordinates.grid, join_style="mitre")
-    shapely.prepare(reach)
+    within = shapely.transform(room, coordinates.local).buffer(coordinates.grid, join_style="mitre")
+    shapely.prepare(within)
     kept: list[Obstacle] = []
     for obstacle in (*obstacles, *holes):
         local, polygon = shapely.transform(obstacle.polygon, coordinates.local), obstacle.polygon
         if inflate > 0.0:
             local = grown(local, inflate, coordinates.grid)
             polygon = shapely.transform(local, coordinates.world)
-        if obstacle.moves or reach.covers(local):
+        if obstacle.moves or within.covers(local):
             kept.append(Obstacle(obstacle.name, polygon, obstacle.dynamics))
             continue
         pieces = _inside(room, polygon, True, coordinates)
@@ -403,20 +471,84 @@ def _check_closed(where: str, scene: Scene) -> None:
         )
 
 
-def _check_free(where: str, scene: Scene, what: str, point: NDArray[np.float64]) -> None:
+def _asked(where: str, scene: Scene, query: Query) -> Query:
+    """A query with what blocks it at time 0, if anything does.
+
+    What comes upon an end later is what dynamic scenes are for: a hit, or a goal to wait for.
+    """
+    now = scene.at_first
+    if scene.snaps:
+        query = _moved_to_free_space(now, query)
+    ends = (("start", query.start), ("goal", query.goal))
+    found = (_not_free(now, point) for _, point in ends)
+    whys = [
+        f"{where}, {role} of query '{query.name}': {printed(*point)} {why}"
+        for (role, point), why in zip(ends, found, strict=True)
+        if why is not None
+    ]
+    return replace(query, blocked=whys[0] if whys else None)
+
+
+def _moved_to_free_space(scene: Scene, query: Query) -> Query:
+    """A query whose ends are free, each where it was, or in the nearest place that is."""
+    ends = [
+        point
+        if _not_free(scene, point) is None
+        else nearest_free(point, scene.regions, scene.arrangement.solid, scene.coordinates)
+        for point in (query.start, query.goal)
+    ]
+    by = [
+        float(np.hypot(*(new - old)))
+        for new, old in zip(ends, (query.start, query.goal), strict=True)
+    ]
+    return replace(query, start=ends[0], goal=ends[1], moved=(by[0], by[1]))
+
+
+def with_snapped_ends(scene: Scene, name: str) -> Scene:
+    """The same scene of another name, in which ends that are not free are moved to where it is.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its queries may be blocked.
+    name : str
+        Of the new one. Its queries keep their names, and say by how much they were moved.
+    """
+    snapping = _with_same_geometry(scene, name=name, snaps=True)
+    asked = tuple(_asked(name, snapping, query) for query in scene.queries)
+    return _with_same_geometry(snapping, queries=asked)
+
+
+def renamed(scene: Scene, name: str) -> Scene:
+    """The same scene of another name, with all that was computed of it."""
+    return _with_same_geometry(scene, name=name)
+
+
+def _with_same_geometry(scene: Scene, **changes: Any) -> Scene:
+    """A copy that keeps the arrangement, which took its time."""
+    copy = replace(scene, **changes)
+    kept = ("arrangement", "mesh", "regions", "hash", "coordinates")
+    copy.__dict__.update({key: scene.__dict__[key] for key in kept if key in scene.__dict__})
+    return copy
+
+
+def _not_free(scene: Scene, point: NDArray[np.float64]) -> str | None:
+    """Why a point is not in the free space of a static scene; None if it is."""
     place, grid = shapely.Point(point), scene.coordinates.grid
-    if scene.workspace.distance(place) > grid:
-        raise SceneError(
-            f"{where}, {what}: {printed(*point)} lies outside the workspace, "
-            f"{printed(*scene.bounds[:2])} to {printed(*scene.bounds[2:])}. Move it inside."
+    grown_by = f", grown by the robot's radius of {scene.radius:g} m" if scene.radius else ""
+    # Asked of thousands of queries: prepared, which is kept with the geometry.
+    shapely.prepare([scene.workspace, scene.arrangement.solid])
+    if not shapely.dwithin(scene.workspace, place, grid):
+        smaller = f", made smaller by the robot's radius of {scene.radius:g} m"
+        return (
+            f"lies outside the workspace, {printed(*scene.bounds[:2])} to "
+            f"{printed(*scene.bounds[2:])}{smaller if scene.radius else ''}. Move it inside."
         )
     if scene.arrangement.solid.contains(place):
         names = [o.name for o in scene.obstacles if o.polygon.distance(place) <= grid]
         names = names or ["the border of the workspace"]
-        raise SceneError(
-            f"{where}, {what}: {printed(*point)} lies inside {' and '.join(names)}. "
-            "Move it to free space."
-        )
+        return f"lies inside {' and '.join(names)}{grown_by}. Move it to free space."
+    return None
 
 
 def scene_at(scene: Scene, time: float, without: Collection[str] = ()) -> Scene:

@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,7 @@ class World:
     cold: bool = False
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Cell:
     """One run that is wanted: a query of a scene, a planner variant, a budget and a seed.
 
@@ -47,6 +48,7 @@ class Cell:
     seed : int, 0 or more.
     world : of a run that is simulated; None if the scene stands still and is planned in once.
     position : place in its matrix; tables keep that order. The outcome does not depend on it.
+    blocked : why the query can't be asked, if its matrix knows: it is refused and never run.
     """
 
     scene: str
@@ -62,6 +64,7 @@ class Cell:
     seed: int
     world: World | None = None
     position: int = 0
+    blocked: str | None = None
 
     @property
     def label(self) -> str:
@@ -102,7 +105,7 @@ class Cell:
         # stay what they are.
         return data if budget.cpu_s is None else data | {"cpu_s": float(budget.cpu_s)}
 
-    @property
+    @cached_property
     def key(self) -> str:
         """Hash of everything that the outcome depends on: the row's identity in a store.
 
@@ -156,6 +159,10 @@ class RunRecord:
         was ended by the clock.
     attempts : how often it was run, for want of a processor of its own; this is the record of the
         first run that had one, or else of the first of all.
+    prepare_s : CPU seconds that it took to load and arrange the scene, before any clock, in the
+        process that did it for this run: its own, or the one that it was forked from, where one
+        preparation serves all runs of the scene.
+    exact_s : CPU seconds that the exact optimum of the query took, likewise; it is made once.
     host : name of the machine.
     started_at : date and time, ISO 8601, UTC.
     improvements : what the planner reported while it ran.
@@ -189,6 +196,8 @@ class RunRecord:
     load: float | None = None
     contended: bool | None = None
     attempts: int | None = 1
+    prepare_s: float | None = None
+    exact_s: float | None = None
     host: str | None = None
     started_at: str | None = None
     improvements: tuple[Improvement, ...] = ()

@@ -8,7 +8,6 @@ from suite.report.figures.files import as_png
 from suite.report.figures.simulation import plot_snapshots
 from suite.report.html.evidence import Evidence
 from suite.report.rows import places
-from suite.scenes.catalogue import scene_as_it_was
 from suite.simulation.record import from_data
 from suite.store.read import read_simulation
 
@@ -46,7 +45,7 @@ def drive_sheets(evidence: Evidence) -> tuple[list[DriveSheet], int]:
             f"{row['variant']}: the run ended as {row['status']}."
         )
         try:
-            scene, _ = scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])
+            scene, _ = evidence.scenes.of(row)
             data = read_simulation(evidence.store, row["key"])
         except KbgaBenchError as error:
             sheets.append(DriveSheet(title, alt, "", f"It can't be drawn: {error}"))

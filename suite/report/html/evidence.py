@@ -25,6 +25,7 @@ from suite.store.read import (
     read_snapshots,
     read_wanted,
 )
+from suite.store.scenes import KeptScenes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,6 +44,7 @@ class Evidence:
     wanted : what the matrices want.
     conflicts : number of rows of other stores that say something else.
     sessions : provenance.
+    scenes : that the rows ran on.
     """
 
     store: Path
@@ -56,6 +58,7 @@ class Evidence:
     wanted: pd.DataFrame
     conflicts: int
     sessions: list[dict[str, Any]]
+    scenes: KeptScenes
 
     @property
     def driven(self) -> pd.DataFrame:
@@ -95,4 +98,5 @@ def read_evidence(store: Path, reference: str | None = None) -> Evidence:
         wanted=read_wanted(store),
         conflicts=len(read_conflicts(store)),
         sessions=read_sessions(store),
+        scenes=KeptScenes(store),
     )

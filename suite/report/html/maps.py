@@ -23,8 +23,6 @@ from suite.report.statistics.inference import Array
 from suite.report.statistics.over_queries import HARDEST_RULE, hardest, only_maps, query_measures
 from suite.report.table import Table
 from suite.report.words import fixed, query_label
-from suite.scenes.catalogue import scene_as_it_was
-from suite.scenes.scene import Scene
 
 MAPS_AT_MOST = 24
 """A page of more is not looked at."""
@@ -147,21 +145,17 @@ def _panel(
 def _drawn(
     runs: pd.DataFrame, shown: list[str], evidence: Evidence
 ) -> tuple[Drawing | None, list[HardQuery], str]:
-    scenes: dict[str, Scene] = {}
     hard = []
     try:
         first = runs.iloc[0]
-        scene, _ = scene_as_it_was(first["scene_source"], first["query"], first["scene_hash"])
-        scenes[first["scene_source"]] = scene
+        scene, _ = evidence.scenes.of(first.to_dict())
         drawing = draw(scene)
         for i, name in enumerate(shown):
             here = runs[runs["query"] == name]
             row = here.iloc[0]
             if row["scene_source"] != first["scene_source"]:
                 continue
-            _, query = scene_as_it_was(
-                row["scene_source"], name, row["scene_hash"], load=scenes.__getitem__
-            )
+            _, query = evidence.scenes.of(row.to_dict())
             paths = best_paths(here, drawing, evidence, widest=10.0)
             hard.append(HardQuery(i + 1, query_label(name), drawing.ends(query), paths))
     except KbgaBenchError as error:

@@ -12,7 +12,6 @@ from suite.report.html.appearance import PLANNERS_AT_MOST, Appearance, appearanc
 from suite.report.html.drawing import Drawing, Place, draw
 from suite.report.html.evidence import Evidence
 from suite.report.rows import cheapest, feasible, is_of_map
-from suite.scenes.catalogue import scene_as_it_was
 
 SCENES_AT_MOST = 40
 """A page of more is not looked at."""
@@ -96,7 +95,7 @@ def scene_pictures(evidence: Evidence) -> tuple[list[ScenePicture], int]:
 
 def _picture(number: int, name: str, runs: pd.DataFrame, evidence: Evidence) -> ScenePicture:
     optimum = runs["optimum"].max()
-    drawing, ends, reason = _drawing(runs.iloc[0])
+    drawing, ends, reason = _drawing(runs.iloc[0], evidence)
     return ScenePicture(
         number,
         name,
@@ -108,9 +107,11 @@ def _picture(number: int, name: str, runs: pd.DataFrame, evidence: Evidence) -> 
     )
 
 
-def _drawing(row: "pd.Series[Any]") -> tuple[Drawing | None, tuple[Place, ...], str]:
+def _drawing(
+    row: "pd.Series[Any]", evidence: Evidence
+) -> tuple[Drawing | None, tuple[Place, ...], str]:
     try:
-        scene, query = scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])
+        scene, query = evidence.scenes.of(row.to_dict())
     except KbgaBenchError as error:
         return None, (), f"It can't be drawn: {error}"
     drawing = draw(scene)

@@ -27,8 +27,10 @@ polygons = st.one_of(lattice_polygons(), float_polygons(), stars)
 def test_all_within_the_radius_is_covered_and_hardly_more(polygon, radius):
     cover = grown(polygon, radius, GRID)
     assert cover.is_valid
-    assert cover.exterior.distance(polygon) >= radius - 2.0 * GRID
-    assert all(hole.distance(polygon) >= radius - 2.0 * GRID for hole in cover.interiors)
+    again = shapely.set_precision(cover, GRID)
+    for outline in (cover, again):
+        assert outline.exterior.distance(polygon) >= radius - 1e-2 * GRID
+        assert all(hole.distance(polygon) >= radius - 1e-2 * GRID for hole in outline.interiors)
     reach = shapely.buffer(polygon, radius * WIDEST * 1.0001, quad_segs=500)
     assert cover.difference(reach).area < 1e-6
 
@@ -40,13 +42,25 @@ def test_what_is_left_of_a_room_keeps_the_radius_from_its_border(polygon, radius
     assume(not left.is_empty)
     assert left.is_valid
     assert polygon.contains_properly(left)
-    assert left.distance(polygon.boundary) >= radius - 2.0 * GRID
+    assert left.distance(polygon.boundary) >= radius - 1e-2 * GRID
     assert polygon.buffer(-radius * WIDEST * 1.0001, quad_segs=500).difference(left).area < 1e-6
 
 
 def test_walls_move_by_exactly_the_radius():
-    assert grown(box(4, 4, 6, 6), 0.5, GRID).bounds == (3.5, 3.5, 6.5, 6.5)
+    middle = shapely.box(4.1, 0, 5.9, 10)
+    assert grown(box(4, 4, 6, 6), 0.5, GRID).intersection(middle).bounds == (4.1, 3.5, 5.9, 6.5)
     assert shrunk(box(0, 0, 10, 10), 0.5, GRID).equals(box(0.5, 0.5, 9.5, 9.5))
+
+
+def test_a_robot_may_stand_exactly_its_radius_from_a_wall_along_an_axis():
+    """On a map of cells of a metre with a radius of 0.5 m: in each cell beside a wall."""
+    cover = grown(box(4, 4, 6, 6), 0.5, GRID)
+    beside = shapely.points([(x, y) for x in (3.5, 4.5, 5.5, 6.5) for y in (3.5, 4.5, 5.5, 6.5)])
+    corners = shapely.points([(x, y) for x in (3.5, 6.5) for y in (3.5, 6.5)])
+    inside = shapely.points([(x, y) for x in (4.5, 5.5) for y in (4.5, 5.5)])
+    assert shapely.relate_pattern(cover, beside, "T********").sum() == 4
+    assert shapely.relate_pattern(cover, inside, "T********").all()
+    assert not cover.intersects(corners).any()
 
 
 def test_a_yard_too_narrow_for_the_robot_is_filled_and_a_wider_one_stays():

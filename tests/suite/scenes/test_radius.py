@@ -8,10 +8,14 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 from shapely.geometry import Polygon
 
-from suite.referee.path import judge
+from suite.referee.path import Referee, judge
+from suite.scenes.catalogue import load_scene
 from suite.scenes.exact import shortest_path
+from suite.scenes.maps.formats import FORMATS
+from suite.scenes.samples import random_queries
 from suite.scenes.scene import Scene, make_scene
 from tests.strategies import SIDE, lattice_boxes, lattice_polygons
+from tests.suite.scenes.real_maps import FOLDER, MISSING, REASON
 
 ROOM = shapely.box(0, 0, SIDE, SIDE)
 PLACES = np.stack(np.meshgrid(*[np.arange(SIDE) + 0.5] * 2), axis=-1).reshape(-1, 2)
@@ -32,10 +36,15 @@ def keeps_away(scene: Scene, room: Polygon, drawn: list[Polygon], radius: float)
     path = shortest_path(scene, scene.query()).path
     assume(path is not None)
     assert judge(scene, scene.query(), path).valid
-    way = shapely.LineString(path)
-    slack = 2.0 * scene.coordinates.grid
-    assert min(way.distance(polygon) for polygon in drawn) >= radius - slack
-    assert way.distance(room.exterior) >= radius - slack
+    assert clearance(scene, path, room, drawn) >= radius - 1e-9
+
+
+def clearance(scene: Scene, path: np.ndarray, room: Polygon, drawn: list[Polygon]) -> float:
+    """Distance of a path to what was drawn, metres; reckoned near zero, where float64 are fine."""
+    origin = np.array(scene.coordinates.origin)
+    way = shapely.LineString(path - origin)
+    closed = [room.exterior, *drawn]
+    return min(way.distance(shapely.transform(one, lambda xy: xy - origin)) for one in closed)
 
 
 @settings(max_examples=60)
@@ -75,3 +84,48 @@ def test_rounding_a_corner_costs_hardly_more_than_the_circle(radius):
     heading = np.arctan2(5.0, 8.0) + np.arcsin(radius / np.hypot(8.0, 5.0))
     exact = 2.0 * (tangent + radius * heading) + 4.0
     assert exact <= found <= exact * 1.0001
+
+
+@pytest.mark.parametrize("start_angle", [1.0, 37.0])
+def test_nor_does_a_way_that_is_nothing_but_the_circle(start_angle):
+    """Around a pillar as slim as a scene may have it, hugging it all the way."""
+    radius, slim = 2.0, 1e-6
+    pillar = shapely.box(-slim, -slim, slim, slim)
+    angles = np.radians([start_angle, start_angle + 178.0])
+    ends = 1.0003 * radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    scene = make_scene("pillar", shapely.box(-9, -9, 9, 9), [pillar], tuple(ends), inflate=radius)
+    found = shortest_path(scene, scene.query()).length
+    round_the_circle = radius * np.radians(178.0)  # nobody who keeps the radius goes less far
+    assert round_the_circle <= found
+    tangents = 2.0 * radius * np.sqrt(1.0003**2 - 1.0)
+    arc = radius * (np.radians(178.0) - 2.0 * np.arccos(1.0 / 1.0003))
+    assert found <= (tangents + arc) * 1.0001 + 8.0 * slim
+
+
+@settings(max_examples=25)
+@given(rooms_for_a_disc(), st.integers(0, 10**6))
+def test_no_path_that_is_accepted_comes_nearer_whoever_found_it(drawn, seed):
+    polygons, ends, radius = drawn
+    scene = make_scene("disc", ROOM, polygons, tuple(ends), inflate=radius)
+    assume(scene.query().blocked is None)
+    rng = np.random.default_rng(seed)
+    corners = scene.arrangement.corners[:, :2]
+    places = np.vstack([corners, rng.uniform(0, SIDE, (20, 2))])
+    referee = Referee(scene)
+    start, goal = scene.query().start, scene.query().goal
+    for _ in range(40):
+        middle = places[rng.integers(len(places), size=rng.integers(0, 3))]
+        path = np.vstack([start, middle, goal])
+        if referee.judge(scene.query(), path).valid:
+            assert clearance(scene, path, ROOM, polygons) >= radius - 1e-9
+
+
+@pytest.mark.skipif(MISSING or ".yaml" not in FORMATS, reason=REASON)
+def test_in_a_scanned_room_no_shortest_path_comes_nearer_to_a_cell_that_is_occupied():
+    radius, name = 0.2, str(FOLDER / "tb3_sandbox.yaml")
+    drawn, scene = load_scene(name), load_scene(f"{name}@radius={radius}")
+    occupied = [obstacle.polygon for obstacle in drawn.obstacles]
+    for query in random_queries(scene, 25, seed=1, min_distance=1.0):
+        path = shortest_path(scene, query).path
+        assert path is not None
+        assert clearance(scene, path, drawn.workspace, occupied) >= radius - 1e-9
