@@ -7,6 +7,7 @@ from suite.errors import KbgaBenchError
 from suite.report.figures.files import as_png
 from suite.report.figures.simulation import plot_snapshots
 from suite.report.html.evidence import Evidence
+from suite.report.rows import places
 from suite.simulation.record import from_data
 from suite.store.read import read_simulation
 
@@ -33,7 +34,8 @@ def drive_sheets(evidence: Evidence) -> tuple[list[DriveSheet], int]:
     ----------
     evidence : Evidence
     """
-    first = evidence.driven.drop_duplicates(["scene_source", "query", "world"])
+    driven = evidence.driven
+    first = driven.assign(place=places(driven)).drop_duplicates(["scene_source", "place", "world"])
     shown = first[:SHEETS_AT_MOST].to_dict("records")
     sheets = []
     for row in shown:

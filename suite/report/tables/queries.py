@@ -45,6 +45,11 @@ ROWS_NOTE = (
     "success: mean over queries of the share of runs. median low and high: interval of the median. "
     "cpu: the same times of the processor."
 )
+LENGTHS = ("shortest fourth", "second", "third", "longest fourth")
+LENGTHS_NOTE = (
+    "The queries of each map with an optimum, by its length, in four parts of equally many. gap: "
+    "over the queries with a path; to 2 %: median over the queries."
+)
 QUERY_NOTE = (
     "A row for each map, query and planner: means over its runs, of the times medians. gap, cost, "
     "clearance, turning: over the runs with a path."
@@ -95,11 +100,15 @@ def map_tables(
         title = f"Maps: {one} against the planner of the row, query by query"
         kinds = {"Holm's p": Kind.P_VALUE}
         tables.append(Table("maps-paired", title, paired, PAIRED_NOTE.format(one=one), kinds=kinds))
+    lengths = Table(
+        "maps-lengths", "Maps: short and long queries apart", by_length(measures), LENGTHS_NOTE,
+        "never", detail=True, infinite_in=dict.fromkeys(_GAPS, INFINITE),
+    )  # fmt: skip
     by_query = Table(
         "queries", "Each planner on each query of the maps", _by_query(measures), QUERY_NOTE,
         "never", detail=True, on_page=False,
     )  # fmt: skip
-    return [*tables, by_query]
+    return [*tables, lengths, by_query]
 
 
 QUANTILES = {"gap 90th (%)": 0.9, "gap 99th (%)": 0.99, "gap worst (%)": 1.0}
@@ -186,6 +195,52 @@ def _times(group: pd.DataFrame) -> dict[str, float]:
         for prefix in ("", "cpu ")
         for name in (f"{prefix}{time_to(target)}" for target in TARGETS)
     }
+
+
+def by_length(measures: pd.DataFrame) -> pd.DataFrame:
+    """Each planner on the short and on the long queries of each map.
+
+    Parameters
+    ----------
+    measures : DataFrame
+        Of :func:`suite.report.statistics.over_queries.query_measures`.
+
+    Returns
+    -------
+    DataFrame
+        A row for each place, planner and fourth of the queries by the length of their optimum.
+    """
+    known = measures[measures["optimum"].notna()]
+    lengths = known.groupby(["place", "query"], sort=False)["optimum"].max()
+    rank = lengths.groupby(level="place").rank(method="first") - 1.0
+    parts = len(LENGTHS) * rank // lengths.groupby(level="place").transform("size")
+    named = parts.map(dict(enumerate(LENGTHS))).rename("part")
+    known = known.join(named, on=["place", "query"])
+    rows = [
+        {
+            "scene": place,
+            "planner": variant,
+            "queries by length": part,
+            "from (m)": float(group["optimum"].min()),
+            "to (m)": float(group["optimum"].max()),
+            "queries": len(group),
+            "with path": int((group["found"] > 0).sum()),
+            "gap median (%)": 100.0 * float(group["gap"].median()),
+            "gap mean (%)": 100.0 * float(group["gap"].mean()),
+            "gap worst (%)": 100.0 * float(group["gap"].max()),
+            "to 2 % (ms)": 1e3 * float(group[time_to(0.02)].median()),
+        }
+        for (place, variant, part), group in known.groupby(["place", "variant", "part"], sort=False)
+    ]
+    frame = pd.DataFrame(rows)
+    if rows:
+        order = [frame[name].map(_order(frame[name])) for name in ("scene", "planner")]
+        frame = frame.iloc[np.lexsort([frame["from (m)"], *reversed(order)])]
+    return frame
+
+
+def _order(names: "pd.Series[str]") -> dict[str, int]:
+    return {name: i for i, name in enumerate(dict.fromkeys(names))}
 
 
 def compare_by_query(

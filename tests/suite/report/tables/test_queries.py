@@ -87,6 +87,22 @@ def test_planners_are_compared_query_by_query():
     assert (same["equal"], same["P(kbga better)"], same["Holm's p"]) == (5, 0.5, 1.0)
 
 
+def test_short_and_long_queries_stand_apart():
+    records = [
+        asked("kbga", f"q{i}", length * (1.0 + gap), optimum=length)
+        for i, (length, gap) in enumerate(
+            zip([50.0, 10.0, 40.0, 20.0, 30.0], [0.05] + [0.01] * 4, strict=True)
+        )
+    ]
+    frame = tables_of(*records)["maps-lengths"]
+    assert list(frame["queries by length"]) == [
+        "shortest fourth", "second", "third", "longest fourth",
+    ]  # fmt: skip
+    assert list(frame["queries"]) == [2, 1, 1, 1]
+    assert list(frame["from (m)"]) == [10.0, 30.0, 40.0, 50.0]
+    assert frame["gap worst (%)"].to_list() == pytest.approx([1.0, 1.0, 1.0, 5.0])
+
+
 def test_query_by_query_there_are_files_and_nothing_on_the_page():
     runs, events = frames_of(*town(), *town("prm"))
     tables = all_tables(runs, events=events)
