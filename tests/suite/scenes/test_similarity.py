@@ -15,6 +15,8 @@ from suite.scenes.similarity import modified
 EVERY = [*scene_names(), *dynamic_names(), *aligned_names(), "scattered_30-7"]
 every_scene = pytest.mark.parametrize("name", EVERY)
 TWINS = range(20)
+SHARE = 3
+"""One in so many of the scenes has its twins looked at in an ordinary run."""
 
 
 def length(scene: Scene) -> float:
@@ -25,7 +27,13 @@ def moved(scene: Scene, text: str, inflate: float = 0.0) -> Scene:
     return modified(scene, parse_modifiers(text, scene.name), inflate=inflate)
 
 
-@every_scene
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow if number % SHARE else [])
+        for number, name in enumerate(EVERY)
+    ],
+)
 def test_a_twin_has_the_optimum_of_its_scene(name):
     optimum = length(load_scene(name))
     with warnings.catch_warnings():
