@@ -190,7 +190,9 @@ def main_file(source: str) -> Path | None:
     >>> main_file("maps/berlin.map@radius=0.2").as_posix()
     'maps/berlin.map'
     """
-    base, _ = split_modifiers(source)
+    base, modifiers = split_modifiers(source)
+    if modifiers:  # there may be more before them
+        return main_file(base)
     if _is_path(base):
         return Path(base)
     return scene_file(base) if base in _FILES else None
