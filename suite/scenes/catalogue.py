@@ -252,7 +252,8 @@ def _modified(base: str, modifiers: Modifiers, inflate: float | None) -> Scene:
 
 
 def _stated_radius(name_or_path: str) -> float:
-    is_scene_file = Path(name_or_path).suffix.lower() not in FORMATS and _is_path(name_or_path)
+    suffix = Path(name_or_path).suffix.lower()
+    is_scene_file = suffix not in (SUFFIX, *FORMATS) and _is_path(name_or_path)
     return stated_radius(Path(name_or_path)) if is_scene_file else 0.0
 
 
@@ -265,6 +266,9 @@ def _unmodified(
     """A scene as it is drawn. inflate : metres; None, as its file says; 0, not at all."""
     if _is_path(name_or_path):
         path = Path(name_or_path)
+        if path.suffix == SUFFIX:
+            _refuse(options, path.name)
+            return _inflated(read_kept(path), inflate or 0.0)
         if path.suffix.lower() in FORMATS:
             return read_map(path, options, inflate=inflate or 0.0)
         if knows_no_roles(path):
@@ -272,8 +276,6 @@ def _unmodified(
         if path.suffix and path.suffix.lower() not in SUFFIXES and not _looks_like_json(path):
             raise SceneError(f"{path}: {_no_format(path)}")
         _refuse(options, path.name)
-        if path.suffix == SUFFIX:
-            return _inflated(read_kept(path), inflate or 0.0)
         return read_scene(path, inflate=inflate, keep_blocked=keep_blocked)
     name = str(name_or_path)
     _refuse(options, name)
