@@ -3,8 +3,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALLED := .venv/.installed
-# What is installed from this folder beside the base: all planners, and rows as parquet.
-EXTRAS := others,parquet
+# What is installed from this folder beside the base: all planners, rows as parquet, maps of a GIS.
+EXTRAS := others,parquet,gdal
 STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=

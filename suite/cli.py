@@ -28,6 +28,7 @@ app = typer.Typer(
 
 COMMANDS: dict[str, Callable[..., None]] = {
     "list": scenes.list_command,
+    "import": scenes.import_map,
     "generate": scenes.generate,
     "exact": scenes.exact,
     "plan": planners.plan,

@@ -38,6 +38,7 @@ SOURCES = (
     "suite/geometry/*.py",
     "suite/scenes/exact.py",
     "suite/scenes/homotopy.py",
+    "suite/scenes/visibility.py",
     "kbga/**/*.py",
     "baselines/cma_es.py",
     "baselines/grid_astar.py",

@@ -105,10 +105,10 @@ _CHANGES: tuple[Callable[[Any, Any, random.Random], None], ...] = (
 )  # fmt: skip
 
 
-def mutated_bytes(text: str, seed: int) -> bytes:
+def mutated_bytes(text: str | bytes, seed: int) -> bytes:
     """The text as bytes, with one to three things done to it."""
     rng = random.Random(seed)
-    data = text.encode()
+    data = text if isinstance(text, bytes) else text.encode()
     for _ in range(rng.randint(1, 3)):
         data = rng.choice(_BYTES)(data, rng)
     return data

@@ -30,6 +30,7 @@ class ExportFormat(StrEnum):
     CSV = "csv"
     OMPL_LOG = "ompl-log"
     PLANNER_ARENA = "planner-arena"
+    SCENES = "scenes"
 
 
 def tables(
@@ -110,10 +111,11 @@ def export(
     ],
     to: Annotated[ExportFormat, typer.Option(help="Kind of files.")] = ExportFormat.PARQUET,
 ) -> None:
-    """Export the rows of a store.
+    """Export the rows of a store, or its scenes.
 
     parquet, csv: runs, events, traces, paths, a file each. ompl-log: a log of OMPL's benchmarks for
-    each query. planner-arena: the database that Planner Arena reads, made of these logs.
+    each query. planner-arena: the database that Planner Arena reads, made of these logs. scenes: a
+    scene file of each scene, as its rows ran on it.
 
     Example: kbga-bench export out/paper.db rows --to csv
     """
@@ -121,6 +123,10 @@ def export(
         from suite.report.export.files import export_rows
 
         files = export_rows(store, target, to.value)
+    elif to is ExportFormat.SCENES:
+        from suite.report.export.scenes import write_scenes
+
+        files = write_scenes(store, target)
     else:
         from suite.report.export.ompl_log import write_ompl_logs, write_planner_arena
 

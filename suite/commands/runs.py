@@ -76,6 +76,10 @@ def run(
             "ends, and then run contended rows again for so long; 0: neither.",
         ),
     ] = 60.0,
+    maps: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="FOLDER", help="Add the maps of a folder to the scenes; repeatable."),
+    ] = None,
     plugin: PluginOption = None,
 ) -> None:
     """Run what a store still lacks of a matrix, each run in a process of its own.
@@ -90,6 +94,8 @@ def run(
     bit (see `merge`), 130 after Ctrl-C, 143 after SIGTERM.
 
     Example: kbga-bench run paper-static --store out/paper.db --jobs 2
+
+    Example: kbga-bench run real-maps --maps my_maps --store out/maps.db
 
     Example: kbga-bench run paper-static --store out/paper.db --executor dask --address tcp://n1:8786
     """
@@ -109,7 +115,7 @@ def run(
     if force and only_failed:
         raise typer.BadParameter("Give one of --force and --only-failed.", param_hint="--force")
     which = Which.ALL if force else Which.FAILED if only_failed else Which.MISSING
-    wanted = load_matrix(matrix)
+    wanted = load_matrix(matrix, maps=maps or [])
     if dry_run:
         from suite.harness.forecast import forecast_matrix
 
@@ -226,7 +232,8 @@ def rerun(
 ) -> None:
     """Repeat one row from its own record, in this process, and compare the paths.
 
-    The store is not changed. Exit code 0 if the path is the same bit for bit, or may differ because
+    It runs on the scene as the store keeps it, whatever became of the scene's file. The store is
+    not changed. Exit code 0 if the path is the same bit for bit, or may differ because
     the row's budget was of time; 1 otherwise.
 
     Example: kbga-bench rerun out/paper.db zigzag/kbga/7
@@ -235,23 +242,28 @@ def rerun(
     from suite.harness.rerun import compare
     from suite.harness.single import as_data, as_text
     from suite.store.row_names import cell_of
+    from suite.store.scene_files import changed_file
+    from suite.store.scenes import scene_at_hand
     from suite.typed import plain
 
     use_plugins(plugin)
     cell = cell_of(store, row)
-    if debug:
-        import pdb
+    with scene_at_hand(store, cell) as at_hand:
+        if debug:
+            import pdb
 
-        try:
-            record = attempt_cell(cell)
-        except Exception:
-            pdb.post_mortem(sys.exc_info()[2])
-            raise typer.Exit(1) from None
-    else:
-        record = run_cell(cell)
-    found = compare(store, record)
+            try:
+                record = attempt_cell(at_hand)
+            except Exception:
+                pdb.post_mortem(sys.exc_info()[2])
+                raise typer.Exit(1) from None
+        else:
+            record = run_cell(at_hand)
+    found, change = compare(store, record), changed_file(store, cell)
     if style is TextFormat.JSON:
-        print_json({**as_data(record), "key": cell.key, **plain(found)})
+        told = {"key": cell.key, **plain(found), "scene_file": change and change.change.value}
+        print_json({**as_data(record), **told})
     else:
-        say(f"{as_text(record)}\n  {found.words}")
+        lines = [as_text(record), found.words, *([change.as_text()] if change else [])]
+        say("\n  ".join(lines))
     raise typer.Exit(0 if found.same or not found.must_be_same else 1)

@@ -1,4 +1,4 @@
-"""Commands about scenes: list, generate, exact.
+"""Commands about scenes: list, import, generate, exact.
 
 Floors above the planner interface are imported inside the commands: pandas and matplotlib take
 longer to import than ``list`` takes to answer.
@@ -23,7 +23,8 @@ from suite.commands.options import (
     TextStyle,
     use_plugins,
 )
-from suite.commands.output import print_json, print_rows, say
+from suite.commands.output import print_file, print_json, print_rows, say
+from suite.scenes.maps.options import Unknown
 
 
 class What(StrEnum):
@@ -107,6 +108,79 @@ def generate(
     check_scene_file(output)
     write_scene(moving(seed) if obstacles is None else scattered(obstacles, seed), output)
     say(output)
+
+
+def import_map(
+    source: Annotated[
+        str, typer.Argument(metavar="MAP", help="A map's file; modified, if you like.")
+    ],
+    output: Annotated[
+        Path,
+        typer.Option("--output", "-o", metavar="FILE", help="Scene file: .geojson or .json."),
+    ],
+    unknown: Annotated[
+        Unknown | None, typer.Option(help="What cells of an occupancy grid are that say nothing.")
+    ] = None,
+    resolution: Annotated[
+        float | None, typer.Option(metavar="M", help="Metres of a pixel.")
+    ] = None,
+    threshold: Annotated[
+        float | None,
+        typer.Option(metavar="SHARE", help="Share of black, 0 to 1, from which it is an obstacle."),
+    ] = None,
+    layer: Annotated[
+        str | None, typer.Option(metavar="NAME", help="The one to read, of a file of several.")
+    ] = None,
+    simplify: Annotated[
+        float | None,
+        typer.Option(
+            metavar="M",
+            help="Metres by which an obstacle may grow, to have fewer vertices; none shrinks.",
+        ),
+    ] = None,
+    scale: Annotated[
+        float | None, typer.Option(metavar="F", help="Metres of a unit of the map.")
+    ] = None,
+    radius: RadiusOption = None,
+    style: TextStyle = TextFormat.TEXT,
+) -> None:
+    """Read a map of another format, and write it as a scene file, with the queries beside it.
+
+    To run on a map, no scene file is needed: plan, exact and a matrix take MAP itself, with the
+    options of this command behind an @: tb3.yaml@radius=0.2,unknown=free. A map's coordinates are
+    taken for metres, y up.
+
+    Example: kbga-bench import warehouse.svg --scale 0.5 -o warehouse.geojson
+    """
+    from dataclasses import asdict
+
+    from suite.errors import SceneError
+    from suite.scenes.catalogue import load_scene
+    from suite.scenes.geojson import check_scene_file, write_scene
+    from suite.scenes.modifiers import split_modifiers, with_modifiers
+    from suite.scenes.summary import summary_of, summary_text
+
+    check_scene_file(output)
+    if output.resolve() == Path(split_modifiers(source)[0]).resolve():
+        raise SceneError(f"{output}: is the map itself. Name another file.")
+    name = with_modifiers(
+        source,
+        unknown=unknown,
+        resolution=resolution,
+        threshold=threshold,
+        layer=layer,
+        simplify=simplify,
+        scale=scale,
+        radius=radius,
+    )
+    scene = load_scene(name)
+    found = summary_of(scene)
+    write_scene(scene, output)
+    if style is TextFormat.JSON:
+        print_json({"scene": scene.name, "hash": scene.hash, **asdict(found)})
+    else:
+        say(f"{scene.name}: {summary_text(found)}")
+    print_file(output, style)
 
 
 def exact(

@@ -8,22 +8,21 @@ are float64 in the scene's coordinates too, is moved back without rounding. Metr
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
 from typing import TypeVar
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from shapely.geometry import MultiPolygon, Polygon
 
 from suite.geometry.coordinates import Coordinates, coordinates_of
 from suite.geometry.kernels import YMAX, ObstacleArrays
-from suite.geometry.predicates import orientation
+from suite.geometry.parts import Part, Places, convex_parts, sides
 
 Point = tuple[float, float]
-Part = list[Point]
 Array = TypeVar("Array", bound=np.ndarray)
 
 FRAME_MARGIN = 0.25
@@ -41,6 +40,7 @@ class Arrangement:
         the two boundary edges that bound its free side: counter-clockwise from the first to the
         second everything is free, over more than half a turn.
     corner_group : (N,) int64, the group of each corner's first boundary edge, in ascending order.
+    free : the faces of free space; two may share an edge, where a sliver of solid was rounded away.
     """
 
     solid: MultiPolygon
@@ -48,6 +48,7 @@ class Arrangement:
     arrays: ObstacleArrays
     corners: NDArray[np.float64]
     corner_group: NDArray[np.int64]
+    free: tuple[Polygon, ...]
 
 
 def arrange(workspace: Polygon, obstacles: Sequence[Polygon]) -> Arrangement:
@@ -73,20 +74,23 @@ def _arrange(
     workspace: Polygon, obstacles: Sequence[Polygon], coordinates: Coordinates
 ) -> Arrangement:
     """The same, of local coordinates to local coordinates."""
-    faces, is_frame = _solid_faces(workspace, obstacles, coordinates)
-    parts, group_of, frame = _grouped_parts(faces, is_frame)
+    faces, is_frame, free = _faces(workspace, obstacles, coordinates)
+    places = Places(faces)
+    group_of_face, frame = _groups(faces, is_frame, places)
+    parts, group_of = convex_parts(faces, group_of_face, places)
     order = sorted(range(len(parts)), key=lambda i: group_of[i])
     parts = [parts[i] for i in order]
     group_of = [group_of[i] for i in order]
-    edges = _Edges(parts, group_of, workspace)
+    edges = _Edges(parts, group_of, places, workspace)
     sectors = _free_sectors(edges)
     corners, corner_group = _corners(sectors, edges)
     return Arrangement(
-        solid=_as_multipolygon(shapely.union_all(faces)),
-        groups=_group_polygons(parts, group_of, frame),
+        solid=_as_multipolygon(shapely.coverage_union_all(faces)),
+        groups=_group_polygons(faces, group_of_face, frame),
         arrays=_tables(parts, group_of, frame, edges, sectors, coordinates.grid),
         corners=corners,
         corner_group=corner_group,
+        free=tuple(free),
     )
 
 
@@ -109,6 +113,7 @@ def _moved(arrangement: Arrangement, coordinates: Coordinates) -> Arrangement:
         ),
         corners=_moved_rows(arrangement.corners, 6, coordinates),
         corner_group=arrangement.corner_group,
+        free=tuple(shapely.transform(f, coordinates.world) for f in arrangement.free),
     )
 
 
@@ -127,10 +132,10 @@ def _as_multipolygon(geometry: shapely.Geometry) -> MultiPolygon:
     return MultiPolygon(polygons)
 
 
-def _solid_faces(
+def _faces(
     workspace: Polygon, obstacles: Sequence[Polygon], coordinates: Coordinates
-) -> tuple[list[Polygon], list[bool]]:
-    """Solid faces of the arrangement, and which of them belong to the frame."""
+) -> tuple[list[Polygon], list[bool], list[Polygon]]:
+    """Solid faces of the arrangement, which of them belong to the frame, and its free faces."""
     xmin, ymin, xmax, ymax = workspace.bounds
     margin = FRAME_MARGIN * max(xmax - xmin, ymax - ymin)
     outer = shapely.box(xmin - margin, ymin - margin, xmax + margin, ymax + margin)
@@ -145,33 +150,32 @@ def _solid_faces(
     drawn = np.array(obstacles, dtype=np.object_)  # a list would lose its type when it is empty
     in_obstacle = set(inside.query(drawn, predicate="contains")[1].tolist())
     solid = [i for i in range(len(faces)) if i not in in_workspace or i in in_obstacle]
-    return [faces[i] for i in solid], [i not in in_workspace for i in solid]
+    free = sorted(in_workspace - in_obstacle)
+    return (
+        [faces[i] for i in solid],
+        [i not in in_workspace for i in solid],
+        [faces[i] for i in free],
+    )
 
 
-def _grouped_parts(
-    faces: Sequence[Polygon], is_frame: Sequence[bool]
-) -> tuple[list[Part], list[int], int]:
-    """Convex parts of all faces, the group of each, and the number of the frame's group.
+def _groups(
+    faces: Sequence[Polygon], is_frame: Sequence[bool], places: Places
+) -> tuple[list[int], int]:
+    """The group of each solid face, and the number of the frame's group.
 
     Faces of obstacles that have a vertex in common are one group; the frame is a group of its own,
     the last, because the paper's escape distance asks where a group is joined to the border.
     """
-    group_of_face = _join_by_vertices(
-        [f for f, out in zip(faces, is_frame, strict=True) if not out]
-    )
-    frame = len(set(group_of_face))
-    labels = iter(group_of_face)
-    triangles: list[Part] = []
-    group_of: list[int] = []
-    for face, out in zip(faces, is_frame, strict=True):
-        group = frame if out else next(labels)
-        for triangle in _triangles(face):
-            triangles.append(triangle)
-            group_of.append(group)
-    return *_merge_convex(triangles, group_of), frame
+    drawn = [i for i, out in enumerate(is_frame) if not out]
+    numbers = _join_by_vertices([faces[i] for i in drawn], places)
+    frame = len(set(numbers))
+    group_of = [frame] * len(faces)
+    for i, number in zip(drawn, numbers, strict=True):
+        group_of[i] = number
+    return group_of, frame
 
 
-def _join_by_vertices(faces: Sequence[Polygon]) -> list[int]:
+def _join_by_vertices(faces: Sequence[Polygon], places: Places) -> list[int]:
     """Number the connected components of faces that share vertices, in order of appearance."""
     parent = list(range(len(faces)))
 
@@ -181,141 +185,117 @@ def _join_by_vertices(faces: Sequence[Polygon]) -> list[int]:
             i = parent[i]
         return i
 
-    owner: dict[Point, int] = {}
-    for i, face in enumerate(faces):
-        for point in map(tuple, shapely.get_coordinates(face).tolist()):
-            parent[root(i)] = root(owner.setdefault(point, i))
+    xy, index = shapely.get_coordinates(np.array(faces, dtype=np.object_), return_index=True)
+    pairs = np.unique(np.stack([places.numbers(xy), index], axis=1), axis=0)
+    same = pairs[1:, 0] == pairs[:-1, 0]
+    for i, j in zip(pairs[:-1, 1][same].tolist(), pairs[1:, 1][same].tolist(), strict=True):
+        parent[root(j)] = root(i)
     numbers: dict[int, int] = {}
     return [numbers.setdefault(root(i), len(numbers)) for i in range(len(faces))]
 
 
-def _triangles(face: Polygon) -> Iterable[Part]:
-    """Constrained Delaunay triangles of a face, each counter-clockwise."""
-    for triangle in shapely.get_parts(shapely.constrained_delaunay_triangles(face)):
-        a, b, c = (tuple(p) for p in shapely.get_coordinates(triangle)[:3].tolist())
-        side = orientation(*a, *b, *c)
-        if side != 0:
-            yield [a, b, c] if side > 0 else [a, c, b]
-
-
-def _merge_convex(
-    triangles: Sequence[Part], group_of: Sequence[int]
-) -> tuple[list[Part], list[int]]:
-    """Remove shared edges of a group's parts while the result stays convex (Hertel, Mehlhorn)."""
-    parts: dict[int, Part] = dict(enumerate(triangles))
-    owner = {edge: i for i, part in parts.items() for edge in _edges_of(part)}
-    for a, b in list(owner):
-        i, j = owner.get((a, b)), owner.get((b, a))
-        if i is None or j is None or i == j or group_of[i] != group_of[j]:
-            continue
-        merged = _merged(parts[i], parts[j], a, b)
-        if merged is None:
-            continue
-        for edge in (*_edges_of(parts[i]), *_edges_of(parts[j])):
-            del owner[edge]
-        del parts[j]
-        parts[i] = merged
-        owner.update(dict.fromkeys(_edges_of(merged), i))
-    return list(parts.values()), [group_of[i] for i in parts]
-
-
-def _edges_of(part: Part) -> Iterable[tuple[Point, Point]]:
-    return pairwise([*part, part[0]])
-
-
-def _merged(first: Part, second: Part, a: Point, b: Point) -> Part | None:
-    """Union of two convex parts over their common edge a -> b of the first, if it is convex."""
-    i = first.index(a)
-    j = second.index(b)
-    head = first[i + 1 :] + first[: i + 1]  # b ... a
-    tail = second[j + 1 :] + second[: j + 1]  # a ... b
-    # A vertex inside the common side would be left over as a spike: the side goes as a whole.
-    while head[1] == tail[-2]:
-        head, tail = head[1:], tail[:-1]
-    while head[-2] == tail[1]:
-        head, tail = head[:-1], tail[1:]
-    a, b = tail[0], head[0]
-    convex_at_a = orientation(*head[-2], *a, *tail[1]) >= 0
-    convex_at_b = orientation(*tail[-2], *b, *head[1]) >= 0
-    return head + tail[1:-1] if convex_at_a and convex_at_b else None
-
-
 class _Edges:
-    """Directed edges of all parts (solid on the left), and what lies on their other side."""
+    """Directed edges of all parts (solid on the left), in order, and what is on their other side.
 
-    def __init__(self, parts: Sequence[Part], group_of: Sequence[int], workspace: Polygon) -> None:
-        self.group: dict[tuple[Point, Point], int] = {}
-        self.parts_at: dict[Point, list[int]] = defaultdict(list)
-        for i, part in enumerate(parts):
-            for edge in _edges_of(part):
-                self.group[edge] = group_of[i]
-                self.parts_at[edge[0]].append(i)
+    tail, head : (E,) numbers of the places between which they run.
+    part, group : (E,) to which they belong.
+    other : (E,) the group on the other side; -1 if that is free, or outside.
+    is_outer : (E,) whether they lie on the outside of the frame, where no path can come.
+    first : (P,) the first edge of each part.
+    """
+
+    def __init__(
+        self,
+        parts: Sequence[Part],
+        group_of: Sequence[int],
+        places: Places,
+        workspace: Polygon,
+    ) -> None:
+        self.places = places
+        lengths = np.array([len(part) for part in parts])
+        self.first = np.cumsum(lengths) - lengths
+        self.tail = np.array([v for part in parts for v in part])
+        self.head = np.roll(self.tail, -1)
+        self.head[self.first + lengths - 1] = self.tail[self.first]
+        self.part = np.repeat(np.arange(len(parts)), lengths)
+        self.group = np.array(group_of)[self.part]
+        there = self.tail * len(places.xy) + self.head
+        back = self.head * len(places.xy) + self.tail
+        order = np.argsort(there)
+        at = order[np.minimum(np.searchsorted(there, back, sorter=order), len(order) - 1)]
+        self.other = np.where(there[at] == back, self.group[at], -1)
         xmin, ymin, xmax, ymax = workspace.bounds
         margin = 0.5 * FRAME_MARGIN * max(xmax - xmin, ymax - ymin)
-        self._limits = (xmin - margin, ymin - margin, xmax + margin, ymax + margin)
+        low, high = (xmin - margin, ymin - margin), (xmax + margin, ymax + margin)
+        is_inner = np.all((places.xy > low) & (places.xy < high), axis=1)
+        self.is_outer = ~(is_inner[self.tail] & is_inner[self.head])
 
-    def is_seam(self, edge: tuple[Point, Point]) -> bool:
-        return edge[::-1] in self.group
-
-    def is_outer(self, edge: tuple[Point, Point]) -> bool:
-        """Whether an edge lies on the outside of the frame, where no path can come."""
-        xmin, ymin, xmax, ymax = self._limits
-        return not all(xmin < x < xmax and ymin < y < ymax for x, y in edge)
-
-    def bounding_free_space(self) -> list[tuple[Point, Point]]:
-        return [e for e in self.group if not self.is_seam(e) and not self.is_outer(e)]
+    @property
+    def bounding_free_space(self) -> NDArray[np.int64]:
+        """Numbers of the edges that have free space on their other side."""
+        return np.flatnonzero((self.other < 0) & ~self.is_outer)
 
 
-Sector = tuple[Point, Point, Point]
-"""A vertex, then the two neighbours that bound a free sector, counter-clockwise."""
+def _free_sectors(edges: _Edges) -> NDArray[np.int64]:
+    """The free sectors at each vertex of the boundary of free space.
 
-
-def _free_sectors(edges: _Edges) -> list[Sector]:
-    """The free sectors at each vertex of the boundary of free space."""
-    arriving: dict[Point, list[Point]] = defaultdict(list)
-    leaving: dict[Point, list[Point]] = defaultdict(list)
-    for a, b in edges.bounding_free_space():
-        leaving[a].append(b)
-        arriving[b].append(a)
-    sectors: list[Sector] = []
-    for v, sources in arriving.items():
-        if len(sources) == 1:
-            sectors.append((v, sources[0], leaving[v][0]))
-            continue
-        ways = [(_angle(v, m), m, True) for m in sources]
-        ways += [(_angle(v, n), n, False) for n in leaving[v]]
+    (S, 4): a vertex, the two neighbours that bound the sector, counter-clockwise, and the number of
+    the edge that arrives from the first of them.
+    """
+    boundary = edges.bounding_free_space
+    tail, head = edges.tail[boundary], edges.head[boundary]
+    count = np.bincount(head, minlength=len(edges.places.xy))
+    leaving = np.empty(len(count), dtype=np.int64)
+    leaving[tail] = head
+    alone = count[head] == 1
+    simple = np.stack([head, tail, leaving[head], boundary], axis=1)[alone]
+    arrives: dict[int, list[tuple[int, int]]] = defaultdict(list)
+    leaves: dict[int, list[int]] = defaultdict(list)
+    for v, m, edge in zip(
+        head[~alone].tolist(), tail[~alone].tolist(), boundary[~alone].tolist(), strict=True
+    ):
+        arrives[v].append((m, edge))
+    crowded = count[tail] > 1
+    for v, n in zip(tail[crowded].tolist(), head[crowded].tolist(), strict=True):
+        leaves[v].append(n)
+    sectors: list[tuple[int, int, int, int]] = []
+    for v, sources in arrives.items():
+        ways = [(_angle(edges.places, v, m), m, edge) for m, edge in sources]
+        ways += [(_angle(edges.places, v, n), n, -1) for n in leaves[v]]
         ways.sort(key=lambda way: way[0])
-        for (_, m, arrives), (_, n, _) in pairwise([*ways, ways[0]]):
-            if arrives:
-                sectors.append((v, m, n))
-    return sectors
+        for (_, m, edge), (_, n, _) in pairwise([*ways, ways[0]]):
+            if edge >= 0:
+                sectors.append((v, m, n, edge))
+    return np.concatenate([simple, np.array(sectors, dtype=np.int64).reshape(-1, 4)])
 
 
-def _angle(origin: Point, target: Point) -> float:
-    return float(np.arctan2(target[1] - origin[1], target[0] - origin[0]))
+def _angle(places: Places, origin: int, target: int) -> float:
+    (ax, ay), (bx, by) = places.points[origin], places.points[target]
+    return float(np.arctan2(by - ay, bx - ax))
 
 
 def _corners(
-    sectors: Sequence[Sector], edges: _Edges
+    sectors: NDArray[np.int64], edges: _Edges
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Free sectors of more than half a turn, by group and place, and the group of each."""
-    found = sorted(
-        ((v, m, n) for v, m, n in sectors if orientation(*v, *m, *n) < 0),
-        key=lambda sector: (edges.group[sector[1], sector[0]], sector),
-    )
-    rows = np.array(found, dtype=np.float64).reshape(-1, 6)
-    groups = np.array([edges.group[(m, v)] for v, m, _ in found], dtype=np.int64)
-    return _frozen(rows), _frozen(groups)
+    xy = edges.places.xy
+    found = sectors[sides(xy[sectors[:, 0]], xy[sectors[:, 1]], xy[sectors[:, 2]]) < 0]
+    v, m, n, edge = found.T
+    groups = edges.group[edge]
+    order = np.lexsort((n, m, v, groups))
+    return _frozen(xy[found[order, :3]].reshape(-1, 6)), _frozen(groups[order])
 
 
 def _group_polygons(
-    parts: Sequence[Part], group_of: Sequence[int], frame: int
+    faces: Sequence[Polygon], group_of: Sequence[int], frame: int
 ) -> tuple[MultiPolygon, ...]:
-    members: list[list[Polygon]] = [[] for _ in range(frame)]
-    for part, group in zip(parts, group_of, strict=True):
-        if group != frame:
-            members[group].append(Polygon(part))
-    return tuple(_as_multipolygon(shapely.union_all(m)) for m in members)
+    members: list[list[Polygon]] = [[] for _ in range(frame + 1)]
+    for face, group in zip(faces, group_of, strict=True):
+        members[group].append(face)
+    return tuple(
+        MultiPolygon(m) if len(m) == 1 else _as_multipolygon(shapely.coverage_union_all(m))
+        for m in members[:frame]
+    )
 
 
 def _tables(
@@ -323,49 +303,53 @@ def _tables(
     group_of: Sequence[int],
     frame: int,
     edges: _Edges,
-    sectors: Sequence[Sector],
+    sectors: NDArray[np.int64],
     grid: float,
 ) -> ObstacleArrays:
     """Everything in the layout of the kernels; ``parts`` are sorted by group."""
-    boundary, contacts = _boundaries_and_contacts(group_of, frame, edges, grid)
+    xy = edges.places.xy
+    boundary = np.flatnonzero((edges.other != edges.group) & ~edges.is_outer)
+    contacts = _contacts(frame, edges, grid)
     pinches, ways = _pinches(parts, edges, sectors)
-    tree, after = _tree(parts, group_of, frame)
-    groups = [
-        (*_box([p for part in members for p in part]), len(members), end, *edge_rows, *contact_rows)
-        for members, end, edge_rows, contact_rows in zip(
-            _by_group(parts, group_of, frame),
-            after,
-            _spans([len(b) for b in boundary]),
-            _spans([len(c) for c in contacts]),
-            strict=True,
-        )
-    ]
+    boxes = _boxes_of_parts(edges)
+    tree, after = _tree(boxes, [len(p) for p in parts], group_of, frame)
+    count = np.bincount(group_of, minlength=frame + 1)
+    edge_count = np.bincount(edges.group[boundary], minlength=frame + 1)
+    starts = np.cumsum(count) - count
     return ObstacleArrays(
         tree=_table(tree, 8),
-        vertices=_table([(*e[0], edges.is_seam(e)) for part in parts for e in _edges_of(part)], 3),
-        groups=_table(groups, 10),
-        boundary=_table([(*a, *b) for group in boundary for a, b in group], 4),
-        contacts=_table([(*a, *b) for group in contacts for a, b in group], 4),
-        pinches=_table(
-            [(*v, *rows) for v, rows in zip(pinches, _spans([len(w) for w in ways]), strict=True)],
-            4,
+        vertices=_frozen(np.column_stack([xy[edges.tail], (edges.other >= 0).astype(np.float64)])),
+        groups=_frozen(
+            np.column_stack(
+                [
+                    np.minimum.reduceat(boxes[:, :2], starts),
+                    np.maximum.reduceat(boxes[:, 2:], starts),
+                    count,
+                    after,
+                    _spans(edge_count),
+                    _spans([len(c) for c in contacts]),
+                ]
+            ).astype(np.float64)
         ),
+        boundary=_frozen(np.hstack([xy[edges.tail[boundary]], xy[edges.head[boundary]]])),
+        contacts=_table([(*a, *b) for group in contacts for a, b in group], 4),
+        pinches=_frozen(np.hstack([xy[pinches], _spans([len(w) for w in ways])])),
         ways=_table([way for around in ways for way in around], 2),
     )
-
-
-def _by_group(parts: Sequence[Part], group_of: Sequence[int], frame: int) -> list[list[Part]]:
-    members: list[list[Part]] = [[] for _ in range(frame + 1)]
-    for part, group in zip(parts, group_of, strict=True):
-        members[group].append(part)
-    return members
 
 
 Box = tuple[float, float, float, float]
 
 
+def _boxes_of_parts(edges: _Edges) -> NDArray[np.float64]:
+    """(P, 4) the box of each part."""
+    xy = edges.places.xy[edges.tail]
+    low, high = np.minimum.reduceat(xy, edges.first), np.maximum.reduceat(xy, edges.first)
+    return np.hstack([low, high])
+
+
 def _tree(
-    parts: Sequence[Part], group_of: Sequence[int], frame: int
+    boxes: NDArray[np.float64], lengths: Sequence[int], group_of: Sequence[int], frame: int
 ) -> tuple[list[tuple[float, ...]], list[int]]:
     """Rows of the tree of boxes, and for each group the row after it.
 
@@ -375,8 +359,12 @@ def _tree(
     rows: list[tuple[float, ...]] = []
     after = [0] * (frame + 1)
     leaves: list[list[tuple[Box, int, int]]] = [[] for _ in range(frame + 1)]
-    for part, group, span in zip(parts, group_of, _spans([len(p) for p in parts]), strict=True):
-        leaves[group].append((_box(part), *span))
+    ends = list(accumulate(lengths, initial=0))
+    for (xmin, ymin, xmax, ymax), group, span in zip(
+        boxes.tolist(), group_of, pairwise(ends), strict=True
+    ):
+        leaves[group].append(((xmin, ymin, xmax, ymax), *span))
+    hulls = [_hull([box for box, _, _ in leaf]) for leaf in leaves]
 
     def add_parts(members: list[tuple[Box, int, int]], group: int) -> None:
         if len(members) == 1:
@@ -386,9 +374,10 @@ def _tree(
         at = len(rows)
         rows.append(())
         boxes = [box for box, _, _ in members]
-        for half in _halves(boxes):
+        hull = _hull(boxes)
+        for half in _halves(boxes, hull):
             add_parts([members[i] for i in half], group)
-        rows[at] = (*_hull(boxes), len(rows), group, -1, -1)
+        rows[at] = (*hull, len(rows), group, -1, -1)
 
     def add_groups(members: list[int]) -> None:
         if len(members) == 1:
@@ -397,10 +386,11 @@ def _tree(
             return
         at = len(rows)
         rows.append(())
-        boxes = [_hull([box for box, _, _ in leaves[group]]) for group in members]
-        for half in _halves(boxes):
+        boxes = [hulls[group] for group in members]
+        hull = _hull(boxes)
+        for half in _halves(boxes, hull):
             add_groups([members[i] for i in half])
-        rows[at] = (*_hull(boxes), len(rows), -1, -1, -1)
+        rows[at] = (*hull, len(rows), -1, -1, -1)
 
     add_groups(list(range(frame + 1)))
     return rows, after
@@ -412,11 +402,12 @@ def _hull(boxes: Sequence[Box]) -> Box:
     return min(xmin), min(ymin), max(xmax), max(ymax)
 
 
-def _halves(boxes: Sequence[Box]) -> tuple[list[int], list[int]]:
+def _halves(boxes: Sequence[Box], hull: Box) -> tuple[list[int], list[int]]:
     """Indices of boxes, halved at the median of their centres along the longer side of all."""
-    xmin, ymin, xmax, ymax = _hull(boxes)
+    xmin, ymin, xmax, ymax = hull
     axis = 0 if xmax - xmin >= ymax - ymin else 1
-    order = sorted(range(len(boxes)), key=lambda i: boxes[i][axis] + boxes[i][axis + 2])
+    twice_centre = [box[axis] + box[axis + 2] for box in boxes]
+    order = sorted(range(len(boxes)), key=twice_centre.__getitem__)
     middle = len(order) // 2
     return order[:middle], order[middle:]
 
@@ -424,28 +415,23 @@ def _halves(boxes: Sequence[Box]) -> tuple[list[int], list[int]]:
 Stretch = tuple[Point, Point]
 
 
-def _boundaries_and_contacts(
-    group_of: Sequence[int], frame: int, edges: _Edges, grid: float
-) -> tuple[list[list[Stretch]], list[list[Stretch]]]:
-    """For each group its edges towards anything else, and where it touches the frame."""
-    boundary: list[list[Stretch]] = [[] for _ in range(frame + 1)]
+def _contacts(frame: int, edges: _Edges, grid: float) -> list[list[Stretch]]:
+    """For each group, where it touches the frame."""
+    points = edges.places.points
     shared: list[list[Stretch]] = [[] for _ in range(frame + 1)]
-    points: list[list[Stretch]] = [[] for _ in range(frame + 1)]
-    for edge, group in edges.group.items():
-        other = edges.group.get(edge[::-1])
-        if other != group and not edges.is_outer(edge):
-            boundary[group].append(edge)
-        if other == frame and group != frame:
-            shared[group].append(edge)
-    along = [{v for edge in stretches for v in edge} for stretches in shared]
-    for v, incident in edges.parts_at.items():
-        groups = {group_of[i] for i in incident}
-        if frame in groups:
-            for group in groups - {frame}:
-                if v not in along[group]:
-                    points[group].append((v, v))
-    contacts = [_whole_stretches(s, grid) + p for s, p in zip(shared, points, strict=True)]
-    return boundary, contacts
+    along: list[set[int]] = [set() for _ in range(frame + 1)]
+    for edge in np.flatnonzero((edges.other == frame) & (edges.group != frame)).tolist():
+        a, b, group = int(edges.tail[edge]), int(edges.head[edge]), int(edges.group[edge])
+        shared[group].append((points[a], points[b]))
+        along[group] |= {a, b}
+    single: list[list[Stretch]] = [[] for _ in range(frame + 1)]
+    of_frame = np.zeros(len(points), dtype=np.bool_)
+    of_frame[edges.tail[edges.group == frame]] = True
+    touching = np.flatnonzero(of_frame[edges.tail] & (edges.group != frame)).tolist()
+    for v, group in dict.fromkeys((int(edges.tail[i]), int(edges.group[i])) for i in touching):
+        if v not in along[group]:
+            single[group].append((points[v], points[v]))
+    return [_whole_stretches(s, grid) + p for s, p in zip(shared, single, strict=True)]
 
 
 def _whole_stretches(shared: Sequence[Stretch], grid: float) -> list[Stretch]:
@@ -471,31 +457,28 @@ def _is_straight(a: Point, b: Point, c: Point, grid: float) -> bool:
 
 
 def _pinches(
-    parts: Sequence[Part], edges: _Edges, sectors: Sequence[Sector]
-) -> tuple[list[Point], list[list[Point]]]:
+    parts: Sequence[Part], edges: _Edges, sectors: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], list[list[Point]]]:
     """Vertices with more than one free sector, and a direction into each part that meets them."""
-    count: dict[Point, int] = defaultdict(int)
-    for v, _, _ in sectors:
-        count[v] += 1
-    pinches = sorted(v for v, n in count.items() if n > 1)
-    return pinches, [[_way_into(parts[i], v) for i in edges.parts_at[v]] for v in pinches]
+    pinches = np.flatnonzero(np.bincount(sectors[:, 0]) > 1)
+    ways: dict[int, list[Point]] = {v: [] for v in pinches.tolist()}
+    for edge in np.flatnonzero(np.isin(edges.tail, pinches)).tolist():
+        v = int(edges.tail[edge])
+        ways[v].append(_way_into(parts[edges.part[edge]], v, edges.places))
+    return pinches, list(ways.values())
 
 
-def _way_into(part: Part, v: Point) -> Point:
+def _way_into(part: Part, v: int, places: Places) -> Point:
     """A direction from vertex v to the inside of a convex part: to the mean of its vertices."""
-    x, y = np.mean(part, axis=0).tolist()
-    return x - v[0], y - v[1]
+    x, y = np.mean([places.points[w] for w in part], axis=0).tolist()
+    return x - places.points[v][0], y - places.points[v][1]
 
 
-def _box(points: Sequence[Point]) -> tuple[float, float, float, float]:
-    xs, ys = zip(*points, strict=True)
-    return min(xs), min(ys), max(xs), max(ys)
-
-
-def _spans(lengths: Sequence[int]) -> list[tuple[int, int]]:
-    """Rows "from" and "to" of consecutive runs of these lengths."""
-    ends = list(accumulate(lengths, initial=0))
-    return list(pairwise(ends))
+def _spans(lengths: ArrayLike) -> NDArray[np.int64]:
+    """(n, 2) rows "from" and "to" of consecutive runs of these lengths."""
+    counts = np.asarray(lengths, dtype=np.int64)
+    ends = np.cumsum(counts)
+    return np.stack([ends - counts, ends], axis=1)
 
 
 def _table(rows: Sequence[tuple[float, ...]], width: int) -> NDArray[np.float64]:

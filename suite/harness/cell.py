@@ -14,8 +14,10 @@ from suite.geometry.tolerances import COST_CLAIM_RELATIVE
 from suite.harness.prepared import (
     build_planner,
     exact_optimum,
+    optimum_cpu_s,
     prepared_scene,
     referee,
+    scene_cpu_s,
     stream,
 )
 from suite.harness.provenance import host_name, load_average
@@ -94,6 +96,7 @@ def _run(
     )
     if query.blocked is not None:
         return refused(cell, query.blocked)
+    blank = replace(blank, prepare_s=scene_cpu_s(cell.scene_source))
     planner = build_planner(cell.planner, cell.settings)
     planner.warm_up()
     reason = refusal(planner, scene, query, cell.budget)
@@ -111,6 +114,7 @@ def _run(
         cpu_s=clock.cpu_s,
         contended=clock.contended,
         optimum=exact_optimum(cell.scene_source, cell.query),
+        exact_s=optimum_cpu_s(cell.scene_source, cell.query),
     )
     try:
         # Arrays are read-only, but numpy lets their owner change that.

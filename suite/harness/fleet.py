@@ -22,6 +22,7 @@ import psutil
 from suite.errors import HarnessError
 from suite.harness.child import run_in_child
 from suite.harness.fork_server import Warmth
+from suite.plugins.own_modules import VARIABLE
 from suite.processes.family import REAP_S, kill_children, kill_family, kill_group
 from suite.processes.multiprocessing_private import (
     forget_server,
@@ -49,6 +50,7 @@ _CONTEXT = multiprocessing.get_context("forkserver")
 class _Fleet:
     """The runs of this process that are in flight, and how often they were told to stop.
 
+    named : the planners that the fork server knows by their files, as it inherits them.
     sentry : looks after the fork server; None before the first one.
     turn : held while one is started or reaped; then the children of the fork server are the runs in
         flight, and orphans of others.
@@ -56,6 +58,7 @@ class _Fleet:
 
     pids: set[int] = field(default_factory=set)
     stops: int = 0
+    named: str | None = None
     sentry: threading.Thread | None = None
     turn: threading.Lock = field(default_factory=threading.Lock)
 
@@ -70,12 +73,19 @@ class StoppedError(Exception):
 def start_server(warmth: Warmth) -> None:
     """Start the fork server, if it does not run yet; it warms itself while the caller goes on.
 
+    One that knows other planners by their files than this process does now is replaced, if it has
+    no run in flight: its children would inherit what it knows.
+
     Raises
     ------
     HarnessError
         If the system starts no process.
     """
+    named = os.environ.get(VARIABLE)
+    if named != _fleet.named and not _fleet.pids:
+        stop_server()
     with _fleet.turn, _server_environment(warmth):
+        _fleet.named = named
         try:
             start_tracker_quietly()
             make_socket_folder()

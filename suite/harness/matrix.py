@@ -20,9 +20,11 @@ from suite.harness.matrix_file import (
 from suite.harness.queries import chosen_queries
 from suite.planner import Budget
 from suite.plugins.discovery import PluginInfo, planner_info
+from suite.plugins.from_file import add_plugins
 from suite.plugins.settings import make_settings
 from suite.scenes.catalogue import has_scene, load_scene
 from suite.scenes.frozen import refuse_moving
+from suite.scenes.maps.folder import maps_in
 from suite.scenes.modifiers import MARK, PATHS, expand_twins, split_modifiers, with_modifiers
 from suite.scenes.scene import Query, Scene, scene_fingerprint
 from suite.simulation.settings import world_settings
@@ -176,13 +178,18 @@ class Matrix:
         ]
 
 
-def load_matrix(name_or_path: str | Path) -> Matrix:
+def load_matrix(name_or_path: str | Path, *, maps: Sequence[Path] = ()) -> Matrix:
     """Read a matrix and check all of it: every scene loads, every planner takes its settings.
+
+    Planners of the files that it names are known to this process from then on, and to those that it
+    starts.
 
     Parameters
     ----------
     name_or_path : str or Path
         One of the catalogue, or a file in the format of :mod:`suite.harness.matrix_file`.
+    maps : sequence of Path
+        Folders, whose maps are scenes beside those that it names.
 
     Returns
     -------
@@ -196,8 +203,10 @@ def load_matrix(name_or_path: str | Path) -> Matrix:
     path = matrix_file(name_or_path)
     source, file = read_matrix_file(path)
     seeds = _seeds(source, (), file.seeds)
-    named = _named_scenes(source, file, seeds)
+    added = [str(folder.resolve()) for folder in maps]
+    named = _named_scenes(source, file, path.parent, added, seeds)
     scenes, sources = _scenes(source, [entry.name for entry in named], path.parent)
+    _name_plugins(source, file, path.parent)
     worlds = _worlds(source, file, scenes)
     if not file.world:
         for scene, entry in zip(scenes, named, strict=True):
@@ -234,9 +243,18 @@ class _Named:
     keys: tuple[str | int, ...]
 
 
-def _named_scenes(source: Source, file: MatrixFile, seeds: tuple[int, ...]) -> list[_Named]:
+def _named_scenes(
+    source: Source,
+    file: MatrixFile,
+    folder: Path,
+    maps: Sequence[str],
+    seeds: tuple[int, ...],
+) -> list[_Named]:
+    if not (file.scenes or maps):
+        what = "it names none. Name some, or a folder of maps with --maps."
+        raise source.error((), f"scenes: {what}")
     named = []
-    for number, entry in enumerate(file.scenes):
+    for number, entry in enumerate([*file.scenes, *maps]):
         scene = SceneEntry(entry) if isinstance(entry, str) else entry
         keys = ("scenes", number)
         own = seeds if scene.seeds is None else _seeds(source, keys, scene.seeds)
@@ -247,11 +265,21 @@ def _named_scenes(source: Source, file: MatrixFile, seeds: tuple[int, ...]) -> l
         try:
             named += [
                 _Named(with_modifiers(twin, radius=radius, snap=snap), own, queries, where)
-                for twin in expand_twins(scene.scene)
+                for name in _maps_of(scene.scene, folder)
+                for twin in expand_twins(name)
             ]
         except SceneError as error:
             raise source.error(("scenes",), str(error)) from error
     return named
+
+
+def _maps_of(name: str, folder: Path) -> list[str]:
+    """The maps of a folder that is named as a scene, with the same modifiers; any other name."""
+    base, modifiers = split_modifiers(name)
+    if not (folder / base).is_dir() or has_scene(name):
+        return [name]
+    behind = f"{MARK}{modifiers}" if modifiers else ""
+    return [f"{path}{behind}" for path in maps_in(folder / base)]
 
 
 def _queries(source: Source, scene: Scene, entry: _Named) -> tuple[Query, ...]:
@@ -356,6 +384,15 @@ def _seeds(
         return tuple(range(seeds))
     _refuse_twins(source, "seeds", seeds, keys)
     return tuple(seeds)
+
+
+def _name_plugins(source: Source, file: MatrixFile, folder: Path) -> None:
+    """Make the planners of a matrix's own files known, beside those of ``--plugin``."""
+    for number, reference in enumerate(file.plugins):
+        try:
+            add_plugins([reference], folder.resolve())
+        except PluginError as error:
+            raise source.error(("plugins", number), str(error)) from error
 
 
 def _variants(source: Source, file: MatrixFile) -> tuple[Variant, ...]:

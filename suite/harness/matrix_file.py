@@ -8,6 +8,7 @@ A TOML file::
     description = "What it is for."
     scenes = ["zigzag", "my_scene.geojson"]  # catalogue names, or paths relative to this file
     seeds = 20                               # 0 to 19; or a list of seeds
+    plugins = ["mine.py"]                    # optional; as --plugin takes them, from this folder
 
     [limits]                                 # optional; see Limits
     grace_s = 10
@@ -37,6 +38,9 @@ of twins stands for as many scenes. With a table in place of its name, a scene h
 so that several twins need not make the matrix as many times as large::
 
     scenes = ["zigzag", { scene = "zigzag@twin=1..10", seeds = 5 }]
+
+A folder stands for all maps in it: ``scenes = ["my_maps"]``. What folder may be left to the
+command: ``kbga-bench run MATRIX --maps FOLDER`` adds it to the scenes, which then may be left out.
 
 A matrix of simulated runs names worlds. Then every scene is driven through in each of its worlds,
 and the budget is that of each single plan::
@@ -161,21 +165,24 @@ class MatrixFile(_Table, frozen=True):
     """The whole file."""
 
     seeds: _Seeds
+    planner: _Planners
     scenes: Annotated[
         list[_SceneName | SceneEntry],
         Meta(
-            min_length=1,
-            description="a list of names, files, or tables { scene = ..., seeds = ..., "
-            "queries = ..., radius = ..., snap = ... }, at least one",
+            description="a list of names, files, folders of maps, or tables { scene = ..., "
+            "seeds = ..., queries = ..., radius = ..., snap = ... }"
         ),
-    ]
-    planner: _Planners
+    ] = []
     queries: _Queries | None = None
     radius: _Radius | None = None
     snap: bool = False
     world: _Worlds = []
     name: _Name | None = None
     description: str = ""
+    plugins: Annotated[
+        list[_Name],
+        Meta(description='a list of planners\' files: "FILE.py", "FILE.py:CLASS", "MODULE:CLASS"'),
+    ] = []
     limits: dict[str, Any] = {}
 
 

@@ -1,12 +1,19 @@
-"""What runs need and processes keep: scenes, their optima and referees, planners, the stream."""
+"""What runs need and processes keep: scenes, their optima and referees, planners, the stream.
 
+What is made before any clock starts is told: each thing keeps the CPU seconds that it took, in the
+process that made it, and forks of that process know them.
+"""
+
+import time
 import warnings
 import zlib
-from collections.abc import Mapping
-from functools import lru_cache
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from typing import Any, Generic, TypeVar
 
 import numpy as np
+import shapely
 
 from suite.geometry.tolerances import OPTIMUM_RELATIVE
 from suite.planner import Planner
@@ -16,12 +23,22 @@ from suite.processes.output import show_warning
 from suite.referee.path import Referee
 from suite.scenes.catalogue import load_scene
 from suite.scenes.exact import shortest_path
-from suite.scenes.scene import Scene, SceneWarning
+from suite.scenes.scene import Scene, SceneWarning, make_scene
 from suite.store.record import Cell
+
+T = TypeVar("T")
 
 MOST_OPTIMA = 2**17
 """Kept in a process: of all queries of a matrix of maps, for each run leaves from a process that
 has computed them. Each takes a few hundred bytes."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Prepared(Generic[T]):
+    """What was made before any clock, and the CPU seconds that it took."""
+
+    value: T
+    cpu_s: float
 
 
 def stream(cell: Cell) -> np.random.Generator:
@@ -34,13 +51,41 @@ def named_stream(scene: str, query: str, variant: str, seed: int) -> np.random.G
     return np.random.default_rng([seed, zlib.crc32(f"{scene}/{query}/{variant}".encode())])
 
 
-@lru_cache(maxsize=64)
 def prepared_scene(source: str) -> Scene:
     """A scene with its arrangement computed; kept, so that a warmed process hands it on."""
-    scene = load_scene(source)
-    # Touching the cached property builds it.
-    _ = scene.arrangement
-    return scene
+    return _scene(source).value
+
+
+def scene_cpu_s(source: str) -> float:
+    """CPU seconds that it took to load and arrange a scene, once for all runs that are given it."""
+    return _scene(source).cpu_s
+
+
+@lru_cache(maxsize=64)
+def _scene(source: str) -> Prepared[Scene]:
+    def prepare() -> Scene:
+        scene = load_scene(source)
+        # Touching the cached property builds it.
+        _ = scene.arrangement
+        return scene
+
+    return _timed(prepare)
+
+
+def _timed(make: Callable[[], T]) -> Prepared[T]:
+    """Make something, and say what it took; kernels are loaded, or compiled, before."""
+    _have_kernels()
+    start = time.process_time()
+    value = make()
+    return Prepared(value, time.process_time() - start)
+
+
+@cache
+def _have_kernels() -> None:
+    """Load what scenes and optima are made by, once in a process: it is no scene's own."""
+    wall = shapely.box(4, 0, 6, 7)
+    scene = make_scene("one wall", shapely.box(0, 0, 10, 10), [wall], ((1, 3), (9, 3)))
+    shortest_path(scene, scene.query())
 
 
 @lru_cache(maxsize=64)
@@ -49,18 +94,28 @@ def referee(source: str) -> Referee:
     return Referee(prepared_scene(source))
 
 
-@lru_cache(maxsize=MOST_OPTIMA)
 def exact_optimum(source: str, query: str) -> float | None:
     """Length of the exact shortest path of a query, metres; None if there is none.
 
     Always computed: what a scene file states holds for the geometry that it once had. If it is
     another length, a :class:`SceneWarning` says so.
     """
+    return _optimum(source, query).value
+
+
+def optimum_cpu_s(source: str, query: str) -> float:
+    """CPU seconds that the exact optimum of a query took, once for all runs of the query."""
+    return _optimum(source, query).cpu_s
+
+
+@lru_cache(maxsize=MOST_OPTIMA)
+def _optimum(source: str, query: str) -> Prepared[float | None]:
     scene = prepared_scene(source)
     wanted = scene.query(query)
     if wanted.blocked is not None:
-        return None
-    length = shortest_path(scene, wanted).length
+        return Prepared(None, 0.0)
+    found = _timed(lambda: shortest_path(scene, wanted).length)
+    length = found.value
     stated = scene.stored_optimum(wanted)
     if stated is not None and not abs(stated - length) <= OPTIMUM_RELATIVE * stated:
         warnings.warn(
@@ -68,9 +123,9 @@ def exact_optimum(source: str, query: str) -> float | None:
             f"{f'{length:.9g} m' if np.isfinite(length) else 'none, there is no path'}, which "
             "counts. Take properties.optimum out, or put it right.",
             SceneWarning,
-            stacklevel=2,
+            stacklevel=3,
         )
-    return length if np.isfinite(length) else None
+    return Prepared(length if np.isfinite(length) else None, found.cpu_s)
 
 
 def make_ready(source: str, query: str) -> None:

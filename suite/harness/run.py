@@ -194,6 +194,7 @@ def run_matrix(
     progress = Progress.at_first(cells, missing, there)
     on_progress(progress)
     store.want(matrix.name, cells)
+    store.keep_scenes({scene.name: scene for scene in matrix.scenes}, cells)
 
     def keep(record: RunRecord) -> None:
         store.add(record, replace=record.cell.key in there)
@@ -241,7 +242,8 @@ def session(
 ) -> Iterator[Crew]:
     """Those who run these cells; the store is told where the rows come from that follow."""
     limits = matrix.limits
-    with crew(executor, jobs, patience, limits, warmth_for(cells, limits)) as own:
+    scenes = dict(zip(matrix.sources, matrix.scenes, strict=True))
+    with crew(executor, jobs, patience, limits, warmth_for(cells, limits), scenes) as own:
         distributions = {(cell.distribution, cell.version) for cell in cells}
         place = {"pid": os.getpid(), **own.provenance()}
         store.begin_session(provenance(matrix.name, distributions) | place)

@@ -211,6 +211,8 @@ def as_data(record: RunRecord) -> dict[str, Any]:
         "cpu_s": record.cpu_s,
         "contended": record.contended,
         "time_to_best_s": record.time_to_best_s,
+        "prepare_s": record.prepare_s,
+        "exact_s": record.exact_s,
         "events": [[event.wall_s, event.cost] for event in record.improvements],
         "path": None if record.path is None else record.path.tolist(),
     }

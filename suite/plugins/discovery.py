@@ -126,8 +126,8 @@ def _declared() -> dict[str, list[Source]]:
 def _unknown(name: str, declared: Iterable[str]) -> PluginError:
     installed = ", ".join(sorted(declared)) or "none"
     return PluginError(
-        f"no planner '{name}'. Installed: {installed}; or give its file with --plugin."
-        f"{did_you_mean(name, declared)}"
+        f"no planner '{name}'. Installed: {installed}; or give its file with --plugin, "
+        f"or in the `plugins` of a matrix.{did_you_mean(name, declared)}"
     )
 
 
@@ -186,7 +186,7 @@ def _place(source: Source) -> str:
 
 def _one_of(sources: Sequence[Source]) -> str:
     if any(isinstance(source, NamedPlugin) for source in sources):
-        return "Give the one of --plugin another name, or leave it out."
+        return "Give the one that is named by its file another name, or leave it out."
     return "Uninstall one of them."
 
 

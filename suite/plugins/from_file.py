@@ -82,9 +82,48 @@ def name_plugins(references: Iterable[str]) -> list[NamedPlugin]:
     PluginError
         If there is no planner. Nothing has changed then.
     """
-    plugins = [plugin for reference in references for plugin in _resolved(reference)]
+    plugins = []
+    for reference in references:
+        try:
+            plugins += _resolved(reference, Path.cwd())
+        except PluginError as error:
+            raise PluginError(f"--plugin {error}") from error.__cause__
     hand_on(plugins)
     return plugins
+
+
+def add_plugins(references: Iterable[str], folder: Path) -> list[NamedPlugin]:
+    """Make planners known as :func:`name_plugins` does, beside those that are known so already.
+
+    Parameters
+    ----------
+    references : iterable of str
+        As there. One that is known already is known as its code is now.
+    folder : Path
+        The whole path of the one that files are relative to, and where modules are looked for.
+
+    Returns
+    -------
+    list of NamedPlugin
+
+    Raises
+    ------
+    PluginError
+        If there is no planner. Nothing has changed then.
+    """
+    plugins = [plugin for reference in references for plugin in _resolved(reference, folder)]
+    places = {_place(plugin) for plugin in plugins}
+    hand_on([known for known in named_plugins() if _place(known) not in places] + plugins)
+    return plugins
+
+
+def _place(plugin: NamedPlugin) -> tuple[str, str]:
+    """Where a planner's code is, by whatever way it was named: its file, or module, and its class.
+
+    A module is looked for in many places, so its name is enough.
+    """
+    place, _, kind = plugin.reference.rpartition(":")
+    return str(Path(place).resolve()) if place.endswith(".py") else place, kind
 
 
 def hand_on(plugins: Sequence[NamedPlugin]) -> None:
@@ -100,20 +139,20 @@ def named_plugins() -> list[NamedPlugin]:
     return [NamedPlugin(**fields) for fields in json.loads(os.environ.get(VARIABLE, "[]"))]
 
 
-def _resolved(reference: str) -> list[NamedPlugin]:
-    place, kind = _parsed(reference)
-    folder = str(Path.cwd())
+def _resolved(reference: str, base: Path) -> list[NamedPlugin]:
+    place, kind = _parsed(reference, base)
+    folder = str(base)
     try:
         code = _code(place, folder)
         hashed, version = code_hash(code), _version(code)
         module = _imported(place, hashed)
     except PluginError as error:
-        raise PluginError(f"--plugin {reference}: {error}") from error
+        raise PluginError(f"{reference}: {error}") from error
     except (Exception, SystemExit) as error:  # other people's code: its import may raise anything
-        raise PluginError(f"--plugin {reference}: {in_words(error)}") from error
+        raise PluginError(f"{reference}: {in_words(error)}") from error
     classes = _planners_of(module) if kind is None else [kind]
     if not classes:
-        raise PluginError(f"--plugin {reference}: no subclass of suite.planner.Planner in it.")
+        raise PluginError(f"{reference}: no subclass of suite.planner.Planner in it.")
     names = [_checked_name(reference, module, each, code) for each in classes]
     return [
         NamedPlugin(name, f"{place}:{each}", folder, hashed, version)
@@ -121,19 +160,19 @@ def _resolved(reference: str) -> list[NamedPlugin]:
     ]
 
 
-def _parsed(reference: str) -> tuple[str, str | None]:
+def _parsed(reference: str, base: Path) -> tuple[str, str | None]:
     """Whole path of the file, or the module, and the class, if one is named."""
     if reference.endswith(".py"):
         place, kind = reference, None
     else:
         place, colon, kind = reference.rpartition(":")
         if not (colon and place and kind.isidentifier()):
-            raise PluginError(f"--plugin {reference}: neither a .py file nor a class. {HOW}")
+            raise PluginError(f"{reference}: neither a .py file nor a class. {HOW}")
     if not place.endswith(".py"):
         return place, kind
-    path = Path(place).expanduser().absolute()
+    path = base / Path(place).expanduser()
     if not path.is_file():
-        raise PluginError(f"--plugin {reference}: there is no file {path}. {HOW}")
+        raise PluginError(f"{reference}: there is no file {path}. {HOW}")
     return str(path), kind
 
 
@@ -184,12 +223,15 @@ def _planners_of(module: ModuleType) -> list[str]:
 def _checked_name(reference: str, module: ModuleType, kind: str, code: Iterable[Path]) -> str:
     found = getattr(module, kind, None)
     if found is None:
-        raise PluginError(f"--plugin {reference}: there is no class {kind} in {module.__file__}.")
+        raise PluginError(f"{reference}: there is no class {kind} in {module.__file__}.")
     wrong = flaw(found)
     if wrong is not None:
-        raise PluginError(f"--plugin {reference}: {kind} {wrong}")
-    refuse_unread(found, code)
+        raise PluginError(f"{reference}: {kind} {wrong}")
+    try:
+        refuse_unread(found, code)
+    except PluginError as error:
+        raise PluginError(f"{reference}: {error}") from error
     name = getattr(found, "name", None)
     if not isinstance(name, str):
-        raise PluginError(f"--plugin {reference}: {kind} has no `name`. Give it one, a string.")
+        raise PluginError(f"{reference}: {kind} has no `name`. Give it one, a string.")
     return name

@@ -10,14 +10,16 @@ from suite.report.optima import check_optima
 from suite.report.paper.contrasts import contrast_table
 from suite.report.paper.tables import COST_NOTE, paper_tables
 from suite.report.paper.verdicts import Rows, verdict_table
-from suite.report.rows import is_simulated, newest
+from suite.report.rows import blocked_note, is_blocked, is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import dropped_note, fair
+from suite.report.statistics.over_queries import only_maps
 from suite.report.table import Table
 from suite.report.tables.ablation import ablation_tables
 from suite.report.tables.alignment import alignment_tables, without_repeats
 from suite.report.tables.budgets import budget_tables
 from suite.report.tables.differences import difference_tables
+from suite.report.tables.queries import map_tables
 from suite.report.tables.ranking import ranking_tables
 from suite.report.tables.simulated import simulated_tables
 from suite.report.tables.statistics import check_reference, statistics_tables
@@ -35,6 +37,11 @@ from suite.store.read import (
 
 BOOTSTRAP_SEED = 2004
 """Any will do; the same rows give the same intervals."""
+
+WITHOUT_MAPS = (
+    "Maps, scenes of many queries, are not here: there the queries are the sample and not the "
+    "runs; the table maps-paired says how surely planners differ."
+)
 
 
 def all_tables(
@@ -78,7 +85,9 @@ def all_tables(
     current = newest(runs)
     check_optima(current)
     left_out = len(runs) - len(current)
-    kept, busy = fair(current), dropped_note(current)
+    asked = current[~is_blocked(current)]
+    kept = fair(asked)
+    untold = joined(dropped_note(asked), blocked_note(current))
     driven = kept[is_simulated(kept)]
     kept = kept[~is_simulated(kept)]
     aligned, kept = alignment_tables(kept), without_repeats(kept)
@@ -88,11 +97,15 @@ def all_tables(
     answers = verdict_table(Rows(kept, driven, _or_empty(first), _or_empty(replans)))
     told = [table for table in (answers, contrast_table(kept)) if table is not None]
     if kept.empty and moving:
-        return _paper_last([*moving, *told], busy)
-    measured = [] if events is None else measured_tables(steps_of(kept, events), reference)
+        return _paper_last([*moving, *told], untold)
+    steps = None if events is None else steps_of(kept, events)
+    measured = [] if steps is None else measured_tables(steps, reference)
+    rng = np.random.default_rng(BOOTSTRAP_SEED)
+    maps = [] if steps is None else map_tables(steps, current, rng, reference)
     return _paper_last(
         [
             *summary_tables(kept, left_out),
+            *maps,
             *aligned,
             *moving,
             *study_tables(kept, first),
@@ -102,7 +115,7 @@ def all_tables(
             *told,
             *paper_tables(kept),
         ],
-        busy,
+        untold,
     )
 
 
@@ -152,9 +165,12 @@ def _or_empty(frame: pd.DataFrame | None) -> pd.DataFrame:
 
 def measured_tables(steps: Steps, reference: str | None = None) -> list[Table]:
     """The ranking, fixed targets and budgets, and the statistics of runs as step functions."""
+    apart = only_maps(steps, maps=False)
+    told = WITHOUT_MAPS if len(apart.runs) < len(steps.runs) else ""
+    surely = statistics_tables(apart, np.random.default_rng(BOOTSTRAP_SEED), reference)
     return [
         *ranking_tables(steps, reference),
         *target_tables(steps),
         *budget_tables(steps),
-        *statistics_tables(steps, np.random.default_rng(BOOTSTRAP_SEED), reference),
+        *(replace(table, note=joined(table.note, told)) for table in surely),
     ]

@@ -3,7 +3,7 @@
 import hashlib
 import json
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from suite.report.export.files import export_rows, made_folder, need_pyarrow
 from suite.report.figures.comparison import comparison_figures
 from suite.report.figures.convergence import convergence_figures
 from suite.report.figures.files import save
+from suite.report.figures.maps import HardQuery, map_figures, plot_map
 from suite.report.figures.overview import overview_figures
 from suite.report.figures.ranks import rank_figures
 from suite.report.figures.replanning import plot_replanning
@@ -25,17 +26,17 @@ from suite.report.figures.runtime import runtime_figures
 from suite.report.figures.scene import plot_scene_results
 from suite.report.figures.simulation import plot_snapshots
 from suite.report.figures.studies import study_figures
-from suite.report.figures.style import LINES, heading
+from suite.report.figures.style import LINES, heading, numbered
 from suite.report.formats import render
 from suite.report.kinds import FigureFormat, Part, TableFormat
 from suite.report.optima import check_optima
 from suite.report.paper.pictures import paper_pictures
-from suite.report.rows import cheapest, feasible, is_simulated, newest
+from suite.report.rows import cheapest, feasible, is_blocked, is_of_map, is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import fair
+from suite.report.statistics.over_queries import hardest, only_maps, query_measures
 from suite.report.table import Table
 from suite.report.tables.alignment import without_repeats
-from suite.scenes.catalogue import scene_as_it_was
 from suite.scenes.scene import Query, Scene
 from suite.simulation.record import from_data
 from suite.store.read import (
@@ -47,6 +48,7 @@ from suite.store.read import (
     read_simulation,
     read_snapshots,
 )
+from suite.store.scenes import KeptScenes
 
 MANIFEST = "manifest.json"
 
@@ -84,7 +86,8 @@ def write_results(
     Raises
     ------
     KbgaBenchError
-        If the store holds no runs, a scene has changed since, or a file can't be written.
+        If the store holds no runs, neither keeps a scene of them nor finds it in its file, or a
+        file can't be written.
     """
     need_pyarrow()
     runs = read_runs(store)
@@ -92,14 +95,15 @@ def write_results(
         raise StoreError(f"{store}: it holds no runs yet. `kbga-bench run` fills it.")
     current = newest(runs)
     check_optima(current)
-    scenes = _scenes(current)
+    shown = fair(without_repeats(current[~is_blocked(current)]))
+    kept = KeptScenes(store)
+    scenes = _scenes(shown, kept)
     folder = made_folder(directory)
     tables = read_tables(store)
     files = write_tables([t for t in tables if not t.detail], folder, TableFormat.MARKDOWN)
     files += write_tables(tables, folder, TableFormat.CSV)
     files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
-    shown = fair(without_repeats(current))
-    for name, figure in _figures(store, shown, scenes, leave_out):
+    for name, figure in _figures(store, shown, kept, scenes, leave_out):
         file = folder / f"{name}{figures.suffix}"
         save(figure, file)
         files.append(file)
@@ -128,30 +132,34 @@ def write_tables(tables: Sequence[Table], directory: Path, style: TableFormat) -
     return files
 
 
-def _scenes(runs: pd.DataFrame) -> list[tuple[Scene, Query]]:
+def _scenes(runs: pd.DataFrame, kept: KeptScenes) -> list[tuple[Scene, Query]]:
     """Scenes and queries of the runs, as they were when these were made."""
-    wanted = runs[["scene_source", "query", "scene_hash"]].drop_duplicates()
-    return [scene_as_it_was(*names) for names in wanted.itertuples(index=False)]
+    wanted = runs.drop_duplicates(["scene", "query", "scene_hash"])
+    return [kept.of(row) for row in wanted.to_dict("records")]
 
 
 def _figures(
     store: Path,
     current: pd.DataFrame,
+    kept: KeptScenes,
     scenes: list[tuple[Scene, Query]],
     leave_out: Collection[Part],
 ) -> Iterator[tuple[str, Figure]]:
     """The figures that are wanted, each with the name of its file."""
     planned, driven = current[~is_simulated(current)], current[is_simulated(current)]
-    paths = read_paths(store)
+    paths, steps = read_paths(store), steps_of(planned, read_events(store))
     yield from study_figures(planned).items()
     if Part.COMPARISONS not in leave_out:
-        yield from _comparisons(steps_of(planned, read_events(store)))
+        yield from _comparisons(steps)
+    on_maps = set(planned.loc[is_of_map(planned), "scene"])
+    apart = [(scene, query) for scene, query in scenes if scene.name not in on_maps]
     if Part.PAPER_PICTURES not in leave_out:
-        yield from paper_pictures(planned, paths, read_snapshots(store), scenes).items()
-    yield from _scene_figures(planned, paths, scenes)
+        yield from paper_pictures(planned, paths, read_snapshots(store), apart).items()
+    yield from _scene_figures(planned, paths, apart)
+    yield from _map_figures(only_maps(steps), paths, scenes)
     if not driven.empty:
         yield REPLANNING, plot_replanning(driven, read_replans(store))
-        yield from _snapshot_sheets(driven, store)
+        yield from _snapshot_sheets(driven, store, kept)
 
 
 def _comparisons(steps: Steps) -> Iterator[tuple[str, Figure]]:
@@ -177,10 +185,37 @@ def _scene_figures(
         yield name, plot_scene_results(scene, query, best, labels=labels)
 
 
-def _snapshot_sheets(runs: pd.DataFrame, store: Path) -> Iterator[tuple[str, Figure]]:
+def _map_figures(
+    steps: Steps, paths: Mapping[str, NDArray[np.float64]], scenes: list[tuple[Scene, Query]]
+) -> Iterator[tuple[str, Figure]]:
+    """Each map once, with its hardest queries, and all queries as marks."""
+    if steps.runs.empty:
+        return
+    runs, measures = steps.runs, query_measures(steps)
+    planners = numbered(runs["variant"])
+    yield from map_figures(measures, planners).items()
+    asked = {(scene.name, query.name): (scene, query) for scene, query in scenes}
+    for place, here in measures.groupby("place", sort=False):
+        names = hardest(here)
+        if not names or len(planners) > len(LINES):
+            continue
+        on_map = runs[runs["place"] == place]
+        hard = [
+            HardQuery(
+                asked[(str(place), name)][1], _best_paths(on_map[on_map["query"] == name], paths)[0]
+            )
+            for name in names
+        ]
+        scene = asked[(str(place), names[0])][0]
+        yield scene.name, plot_map(scene, hard, planners, here["query"].nunique())
+
+
+def _snapshot_sheets(
+    runs: pd.DataFrame, store: Path, kept: KeptScenes
+) -> Iterator[tuple[str, Figure]]:
     """A sheet of the first run of the first planner in each world."""
     for row in runs.drop_duplicates(["scene_source", "world"]).to_dict("records"):
-        scene, _ = scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])
+        scene, _ = kept.of(row)
         data = read_simulation(store, row["key"])
         figure = plot_snapshots(from_data(scene, data))
         heading(figure, f"{data['scene']}, {row['world']}: {row['variant']}")
@@ -193,7 +228,7 @@ def _slug(text: str) -> str:
 
 
 def _best_paths(
-    runs: pd.DataFrame, paths: dict[str, Any]
+    runs: pd.DataFrame, paths: Mapping[str, NDArray[np.float64]]
 ) -> tuple[dict[str, NDArray[np.float64] | None], dict[str, str]]:
     """The cheapest path of each planner in the runs of one query, and its line in the legend."""
     best: dict[str, NDArray[np.float64] | None] = {}

@@ -37,6 +37,7 @@ class Table:
     infinite : what is printed for an infinite number; CSV holds ``inf``.
     infinite_in : the same for some of the columns.
     detail : whether it holds the rows behind another table, too many to be printed among others.
+    on_page : whether the report shows it; of what is too long even for that there are files alone.
     kinds : of columns of numbers that are neither times, by their unit, nor plain measures.
     """
 
@@ -48,6 +49,7 @@ class Table:
     detail: bool = False
     kinds: Mapping[str, Kind] = field(default_factory=dict)
     infinite_in: Mapping[str, str] = field(default_factory=dict)
+    on_page: bool = True
 
     def kind(self, column: str) -> Kind:
         """What the numbers of a column are."""

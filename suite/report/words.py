@@ -1,5 +1,6 @@
 """Numbers and sentences as tables, notes and pictures write them."""
 
+import re
 from collections.abc import Iterable
 from math import inf
 
@@ -55,3 +56,30 @@ def some_of(names: Iterable[object], most: int) -> str:
 def joined(*sentences: str) -> str:
     """A note of several sentences, of which some may be empty."""
     return " ".join(filter(None, sentences))
+
+
+LETTERS_OF_A_QUERY = 28
+"""Longer names are cut in the middle."""
+
+_NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
+_ENDS = re.compile(rf"{_NUMBER},{_NUMBER}:{_NUMBER},{_NUMBER}")
+
+
+def query_label(name: str) -> str:
+    """The name of a query for people: places to four digits, and no text longer than a column.
+
+    Examples
+    --------
+    >>> query_label("main"), query_label("12.345678,4.5:20.125,9.25")
+    ('main', '12.35,4.5:20.12,9.25')
+    >>> query_label("from the loading bay to the far gate")
+    'from the loading…he far gate'
+    """
+    found = _ENDS.fullmatch(name)
+    if found is not None:
+        x, y, to_x, to_y = (f"{float(number):.4g}" for number in found.groups())
+        return f"{x},{y}:{to_x},{to_y}"
+    if len(name) <= LETTERS_OF_A_QUERY:
+        return name
+    kept = LETTERS_OF_A_QUERY - 1
+    return f"{name[: kept - kept // 2]}…{name[-(kept // 2) :]}"

@@ -17,10 +17,19 @@ from pathlib import Path
 
 from suite.errors import SceneError, did_you_mean
 from suite.scenes.frozen import frozen
-from suite.scenes.geojson import read_scene
-from suite.scenes.maps.formats import FORMATS, read_map
+from suite.scenes.geojson import read_scene, stated_radius
+from suite.scenes.kept import SUFFIX, read_kept
+from suite.scenes.maps.features import knows_no_roles
+from suite.scenes.maps.formats import FORMATS, WITHOUT_ROLES, read_map, understood
 from suite.scenes.maps.options import OPTIONS, MapOptions
-from suite.scenes.modifiers import MARK, PATHS, Modifiers, parse_modifiers, split_modifiers
+from suite.scenes.modifiers import (
+    MARK,
+    PATHS,
+    SUFFIXES,
+    Modifiers,
+    parse_modifiers,
+    split_modifiers,
+)
 from suite.scenes.moving import moving, moving_name, parse_moving_name
 from suite.scenes.scattered import parse_scattered_name, scattered, scattered_name
 from suite.scenes.scene import (
@@ -166,7 +175,28 @@ def scene_file(name: str) -> Path:
     return _FOLDER / f"{name}.geojson"
 
 
-def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
+def main_file(source: str) -> Path | None:
+    """The file that a scene is named by; None if it is drawn from a seed, or nothing is known.
+
+    Parameters
+    ----------
+    source : str
+        As :func:`load_scene` takes it.
+
+    Examples
+    --------
+    >>> main_file("maze@turn=3").name, main_file("scattered_50-7")
+    ('maze.geojson', None)
+    >>> main_file("maps/berlin.map@radius=0.2").as_posix()
+    'maps/berlin.map'
+    """
+    base, _ = split_modifiers(source)
+    if _is_path(base):
+        return Path(base)
+    return scene_file(base) if base in _FILES else None
+
+
+def load_scene(name_or_path: str | Path, *, inflate: float | None = None) -> Scene:
     """Load a scene of the catalogue, or one of your own.
 
     Parameters
@@ -176,9 +206,9 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
         :func:`generated_names`, or a scene file; with or without modifiers behind an ``@``, see
         :mod:`suite.scenes.modifiers`. A string with a path separator or with the suffix of a scene
         file (``.geojson``, ``.json``) is a path. A Path has no modifiers.
-    inflate : float
-        Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`. If neither this nor
-        a modifier gives one, a scene file may.
+    inflate : float, optional
+        Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`. Default: that of
+        the modifier, or the one that the file states, or none.
 
     Returns
     -------
@@ -200,18 +230,17 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
         base, text = split_modifiers(name_or_path)
         if text:
             return _modified(base, parse_modifiers(text, name_or_path), inflate)
-    return _unmodified(name_or_path, MapOptions(), inflate or None)
+    return _unmodified(name_or_path, MapOptions(), inflate)
 
 
-def _modified(base: str, modifiers: Modifiers, inflate: float) -> Scene:
+def _modified(base: str, modifiers: Modifiers, inflate: float | None) -> Scene:
     """A scene read, stopped, moved, grown and its ends put right, in this order."""
-    radius = inflate or modifiers.radius
+    said = modifiers.radius if inflate is None else inflate
+    radius = _stated_radius(base) if said is None else said
     # Of an end, at a time or moved, is said in the end whether it is free.
     keep = modifiers.snap or modifiers.at is not None
     grown_last = modifiers.moves or modifiers.at is not None
-    scene = _unmodified(base, modifiers.options, 0.0 if grown_last else radius or None, keep)
-    if grown_last:
-        radius = radius or float(scene.properties.get("radius", 0.0))
+    scene = _unmodified(base, modifiers.options, 0.0 if grown_last else radius, keep)
     name = f"{scene.name}{MARK}{modifiers.text}"
     if modifiers.at is not None:
         scene = frozen(scene, modifiers.at, inflate=0.0 if modifiers.moves else radius)
@@ -220,10 +249,15 @@ def _modified(base: str, modifiers: Modifiers, inflate: float) -> Scene:
     return with_snapped_ends(scene, name) if modifiers.snap else renamed(scene, name)
 
 
+def _stated_radius(name_or_path: str) -> float:
+    is_scene_file = Path(name_or_path).suffix.lower() not in FORMATS and _is_path(name_or_path)
+    return stated_radius(Path(name_or_path)) if is_scene_file else 0.0
+
+
 def _unmodified(
     name_or_path: str | Path,
     options: MapOptions,
-    inflate: float | None = None,
+    inflate: float | None,
     keep_blocked: bool = False,
 ) -> Scene:
     """A scene as it is drawn. inflate : metres; None, as its file says; 0, not at all."""
@@ -234,13 +268,34 @@ def _unmodified(
         path = Path(name_or_path)
         if path.suffix.lower() in FORMATS:
             return read_map(path, options, inflate=inflate or 0.0)
+        if knows_no_roles(path):
+            return read_map(path, options, inflate=inflate or 0.0, form=WITHOUT_ROLES)
+        if path.suffix and path.suffix.lower() not in SUFFIXES and not _looks_like_json(path):
+            raise SceneError(f"{path}: {_no_format(path)}")
         _refuse(options, path.name)
+        if path.suffix == SUFFIX:
+            return _inflated(read_kept(path), inflate or 0.0)
         return read_scene(path, inflate=inflate, keep_blocked=keep_blocked)
     name = str(name_or_path)
     _refuse(options, name)
+    if split_modifiers(name)[1]:
+        return load_scene(name, inflate=inflate or None)
     if _is_generated(name):
         return _inflated(_generated(name), inflate or 0.0)
     return read_scene(scene_file(name), inflate=inflate)
+
+
+def _looks_like_json(path: Path) -> bool:
+    """Whether a file of any suffix is to be read as a scene file: one that is missing is, too."""
+    try:
+        with path.open("rb") as file:
+            return file.read(1000).removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{")
+    except OSError:
+        return True
+
+
+def _no_format(path: Path) -> str:
+    return f"no format of maps has the suffix '{path.suffix[:20]}'. {understood()}"
 
 
 def _refuse(options: MapOptions, where: str) -> None:
@@ -252,7 +307,9 @@ def _refuse(options: MapOptions, where: str) -> None:
 def scene_as_it_was(
     source: str, query: str, fingerprint: str, load: Callable[[str], Scene] = load_scene
 ) -> tuple[Scene, Query]:
-    """The scene and the query of a row, unless they have changed since it was made.
+    """The scene and the query of a run, unless they have changed since it was wanted.
+
+    A store keeps the scenes of its rows, and reads them by :mod:`suite.store.scenes`.
 
     Parameters
     ----------
@@ -274,8 +331,8 @@ def scene_as_it_was(
     asked = scene.query(query)
     if scene_fingerprint(scene, asked) != fingerprint:
         raise SceneError(
-            f"{source}: the scene has changed since its rows were made, or wanted. Run them again "
-            "into a new store, or put the scene back."
+            f"{source}: the scene has changed since its rows were made, or wanted. Give `run` "
+            "again: it runs them on the scene as it is now. Or put the scene back."
         )
     return scene, asked
 
@@ -313,6 +370,8 @@ def _inflated(scene: Scene, inflate: float) -> Scene:
 
 
 def _unknown(name: str) -> str:
+    if Path(name).suffix:
+        return f"no scene '{name}', and {_no_format(Path(name))}"
     message = (
         f"no scene '{name}'. Catalogue: {', '.join(_PAPER_ORDER)}. Dynamic: {', '.join(_DYNAMIC)}. "
         f"Generated: {', '.join(generated_names())}, or scattered_N-S for N obstacles and seed S, "

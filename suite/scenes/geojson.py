@@ -13,7 +13,10 @@ Coordinates are metres in the plane, x right, y up; no projection applies. Each 
     of them it is part of a dynamic scene, and the polygon is where it is drawn, not where it is.
 ``start``, ``goal``
     A Point each. Several pairs make several queries: ``properties.query`` names the pair
-    (default ``main``).
+    (default ``main``). ``properties.stratum`` of a start is the query's stratum. What a start says
+    as ``properties.blocked`` is why the query can't be asked, as the suite wrote it: queries of
+    such a file whose ends are not free are kept, and refused when they are asked; those of any
+    other file are an error.
 
 Properties of an obstacle that changes over time (seconds from the start of a run, metres):
 
@@ -36,11 +39,11 @@ Members of the collection that the suite reads: ``name`` (default: the file's na
 :mod:`suite.scenes.crs`) and ``properties``, an object of which it knows ``description``,
 ``figure``, ``paper_best``, ``reconstruction`` and ``optimum`` (from query name to exact optimal
 length, metres: what the file says of itself, for a reader; results are measured by the one that is
-computed) and ``radius`` (of the robot, metres: obstacles grow by it, unless whoever names the scene
-gives another); of a dynamic scene also ``world``, the default settings of its simulation (see
-:class:`suite.simulation.settings.WorldSettings`), and ``gates``, from a name to a segment
-``[[x, y], [x, y]]`` across an opening, so that a run can say which one the robot passed. Others
-are kept. Any JSON, GIS or shapely tool reads the file.
+computed), ``radius`` (of the robot, metres: obstacles grow by it when the file is read) and
+``grown_by`` (such a radius by which they have grown already); of a dynamic scene also ``world``,
+the default settings of its simulation (see :class:`suite.simulation.settings.WorldSettings`), and
+``gates``, from a name to a segment ``[[x, y], [x, y]]`` across an opening, so that a run can say
+which one the robot passed. Others are kept. Any JSON, GIS or shapely tool reads the file.
 
 Whatever may be left out may be null, as geopandas writes it, and names may be empty, as QGIS does.
 """
@@ -69,7 +72,7 @@ LONGEST_NAME = 200
 _LINE = re.compile(rf"[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]{{1,{LONGEST_NAME}}}")
 """No control characters, no ends of lines, nothing that UTF-8 can't hold."""
 
-_READ = ("optimum", "radius", "world", "gates")
+_READ = ("optimum", "world", "gates", "radius", "grown_by")
 """Properties of the collection that are read, and may be null for being left out."""
 
 
@@ -81,8 +84,8 @@ def read_scene(path: Path, *, inflate: float | None = None, keep_blocked: bool =
     path : Path
         A GeoJSON file in the format of this module.
     inflate : float, optional
-        Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`. Default: what the
-        file says.
+        Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`. Default: the one
+        that the file states, or none.
     keep_blocked : bool
         Keep queries whose ends are not free; see there.
 
@@ -107,9 +110,12 @@ def read_scene(path: Path, *, inflate: float | None = None, keep_blocked: bool =
         raise SceneError(f"{where}: 'features' is missing or no list.")
     name = _name(where, "the collection", document.get("name"), path.stem)
     properties = _properties(where, document)
+    radius, grown_by = (_length(where, properties, key) for key in ("radius", "grown_by"))
     workspaces: list[Polygon] = []
     obstacles: list[Obstacle] = []
     ends: dict[str, dict[str, Any]] = {"start": {}, "goal": {}}
+    strata: dict[str, str] = {}
+    may_be_blocked = False
     for number, feature in enumerate(features, 1):
         role, own, geometry = _feature(where, number, feature)
         if role == "workspace":
@@ -124,6 +130,9 @@ def read_scene(path: Path, *, inflate: float | None = None, keep_blocked: bool =
                     "Name the queries apart with properties.query."
                 )
             ends[role][query] = _point(where, number, role, geometry)
+            if role == "start" and own.get("stratum") is not None:
+                strata[query] = _name(where, f"feature {number}, stratum", own["stratum"], "")
+            may_be_blocked |= own.get("blocked") is not None
     if len(workspaces) != 1:
         raise SceneError(
             f"{where}: {len(workspaces)} workspaces. Give one Polygon of role 'workspace'."
@@ -135,9 +144,33 @@ def read_scene(path: Path, *, inflate: float | None = None, keep_blocked: bool =
         _paired(where, ends["start"], ends["goal"]),
         properties=properties,
         path=path,
-        inflate=properties.get("radius", 0.0) if inflate is None else inflate,
-        keep_blocked=keep_blocked,
+        inflate=radius if inflate is None else inflate,
+        strata=strata,
+        keep_blocked=keep_blocked or may_be_blocked,
+        grown_by=grown_by,
     )
+
+
+def stated_radius(path: Path) -> float:
+    """The radius of the robot that a scene file states, metres; 0 if it states none.
+
+    Raises
+    ------
+    SceneError
+        If the file can't be read.
+    """
+    return _length(path.name, _properties(path.name, _load(path)), "radius")
+
+
+def _length(where: str, properties: dict[str, Any], key: str) -> float:
+    """Take a length out of the properties, metres; 0 if it is not there."""
+    given = properties.pop(key, 0.0)
+    try:
+        return typed(given, Length)
+    except MisfitError as error:
+        raise SceneError(
+            f"{where}: its property '{key}' is {shown(given)}. Give a radius of 0 m or more."
+        ) from error
 
 
 def _load(path: Path) -> dict[str, Any]:
@@ -185,7 +218,6 @@ def _properties(where: str, document: Mapping[str, Any]) -> dict[str, Any]:
     try:
         check_crs(document.get("crs"))
         _check_optimum(own.get("optimum", {}))
-        _check_radius(own.get("radius", 0.0))
         _check_gates(own.get("gates", {}))
     except SceneError as error:
         raise SceneError(f"{where}: {error}") from error
@@ -204,16 +236,6 @@ def _check_optimum(optima: Any) -> None:
             raise SceneError(
                 f"its property 'optimum' of {shown(query)} is {shown(length)}. {mend}"
             ) from error
-
-
-def _check_radius(radius: Any) -> None:
-    try:
-        typed(radius, Length)
-    except MisfitError as error:
-        raise SceneError(
-            f"its property 'radius' is {shown(radius)}. Give the robot's, in metres, or leave it "
-            "out."
-        ) from error
 
 
 def _check_gates(gates: Any) -> None:
@@ -341,6 +363,19 @@ def write_scene(scene: Scene, path: Path) -> None:
     SceneError
         If the file can't be written.
     """
+    with writing(path, SceneError):
+        path.write_text(as_geojson(scene), encoding="utf-8")
+
+
+def as_geojson(scene: Scene, members: Mapping[str, Any] | None = None) -> str:
+    """A scene as the text of a file, one feature a line, with every coordinate to the last bit.
+
+    Parameters
+    ----------
+    scene : Scene
+    members : mapping, optional
+        Further ones of the collection.
+    """
     features = [_as_feature({"role": "workspace"}, mapping(scene.workspace))]
     features += [
         _as_feature(
@@ -349,16 +384,19 @@ def write_scene(scene: Scene, path: Path) -> None:
         for o in scene.obstacles
     ]
     for query in scene.queries:
-        for role, point in (("start", query.start), ("goal", query.goal)):
+        of_start = {"stratum": query.stratum, "blocked": query.blocked}
+        own = {key: value for key, value in of_start.items() if value is not None}
+        for role, point, more in (("start", query.start, own), ("goal", query.goal, {})):
             geometry = {"type": "Point", "coordinates": point.tolist()}
-            features.append(_as_feature({"role": role, "query": query.name}, geometry))
+            features.append(_as_feature({"role": role, "query": query.name, **more}, geometry))
     lines = ",\n".join(json.dumps(f) for f in features)
-    properties = dict(scene.properties)
+    # As it is: whoever reads it is not to grow it again.
+    properties = dict(scene.properties) | ({"grown_by": scene.radius} if scene.radius else {})
     crs = {"crs": properties.pop("crs")} if "crs" in properties else {}
-    head = json.dumps({"name": scene.name, **crs, "properties": properties}, indent=1)
-    text = f'{head[:-2]},\n "type": "FeatureCollection",\n "features": [\n{lines}\n]}}\n'
-    with writing(path, SceneError):
-        path.write_text(text, encoding="utf-8")
+    head = json.dumps(
+        {"name": scene.name, **crs, "properties": properties, **(members or {})}, indent=1
+    )
+    return f'{head[:-2]},\n "type": "FeatureCollection",\n "features": [\n{lines}\n]}}\n'
 
 
 def _as_feature(properties: Mapping[str, Any], geometry: Mapping[str, Any]) -> dict[str, Any]:

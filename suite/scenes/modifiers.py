@@ -22,8 +22,8 @@ the ``@`` stand, in any order and each at most once:
     Starts and goals that are not free are moved to the nearest place that is.
 
 And of maps alone, how they are read, see :class:`suite.scenes.maps.options.MapOptions`:
-``unknown=free`` or ``unknown=occupied``, ``resolution=METRES`` of a pixel, ``threshold=SHARE`` and
-``simplify=METRES``.
+``unknown=free`` or ``unknown=occupied``, ``resolution=METRES`` of a pixel, ``threshold=SHARE``,
+``layer=NAME`` and ``simplify=METRES``.
 
 Workspace, obstacles, starts and goals move as one: the problem stays the same, and so does its
 optimum, but for the scale. Only what a planner lays over the plane itself, a lattice say, meets
@@ -66,7 +66,7 @@ class Modifiers:
     shift : (dx, dy), metres.
     scale : factor on lengths, above 0.
     at : seconds, at which a dynamic scene is to stand still; None: it goes on.
-    radius : of the robot, metres.
+    radius : of the robot, metres; None if nothing is said of it.
     snap : whether ends that are not free are moved to free space.
     options : how the map is read.
     """
@@ -76,7 +76,7 @@ class Modifiers:
     shift: tuple[float, float] = (0.0, 0.0)
     scale: float = 1.0
     at: float | None = None
-    radius: float = 0.0
+    radius: float | None = None
     snap: bool = False
     options: MapOptions = field(default_factory=MapOptions)
 
@@ -110,6 +110,36 @@ def split_modifiers(name: str) -> tuple[str, str]:
     return base, text
 
 
+def with_modifiers(name: str, **values: object) -> str:
+    """The name of a scene with more modifiers behind it; those of no value are left out.
+
+    Parameters
+    ----------
+    name : str
+        Of a scene, or a file, modified or not.
+    values
+        By the name of a modifier: a number, a text, True for ``yes``; None and False leave it out.
+
+    Examples
+    --------
+    >>> with_modifiers("maze", radius=0.5), with_modifiers("maze@turn=3", radius=1.0, snap=True)
+    ('maze@radius=0.5', 'maze@turn=3,radius=1,snap=yes')
+    >>> with_modifiers("maze", radius=None, snap=False)
+    'maze'
+    """
+    said = {k: _briefly(v) for k, v in values.items() if v is not None and v is not False}
+    text = ",".join(f"{key}={value}" for key, value in said.items())
+    mark = "," if split_modifiers(name)[1] else MARK
+    return f"{name}{mark}{text}" if text else name
+
+
+def _briefly(value: object) -> str:
+    if value is True:
+        return "yes"
+    # Options are parsed to floats, and 1.0 is written 1.
+    return np.format_float_positional(value, trim="-") if isinstance(value, float) else str(value)
+
+
 def parse_modifiers(text: str, where: str) -> Modifiers:
     """Read the modifiers of a scene.
 
@@ -134,7 +164,7 @@ def parse_modifiers(text: str, where: str) -> Modifiers:
     --------
     >>> found = parse_modifiers("shift=0.37,turn=17", "zigzag")
     >>> found.text, found.turn, found.shift, found.scale, found.radius
-    ('shift=0.37,turn=17', 17.0, (0.37, 0.0), 1.0, 0.0)
+    ('shift=0.37,turn=17', 17.0, (0.37, 0.0), 1.0, None)
     """
     pairs = _pairs(text, where)
     turn = _number(pairs["turn"], "turn", where) if "turn" in pairs else 0.0
@@ -149,46 +179,10 @@ def parse_modifiers(text: str, where: str) -> Modifiers:
         shift,
         scale,
         _not_negative(pairs["at"], "at", where) if "at" in pairs else None,
-        _not_negative(pairs["radius"], "radius", where) if "radius" in pairs else 0.0,
+        _not_negative(pairs["radius"], "radius", where) if "radius" in pairs else None,
         "snap" in pairs and _yes(pairs["snap"], "snap", where),
         _options({key: value for key, value in pairs.items() if key in OPTIONS}, where),
     )
-
-
-def with_modifiers(
-    name: str, *, radius: float | None = None, at: float | None = None, snap: bool = False
-) -> str:
-    """The name of a scene with more modifiers behind it.
-
-    Parameters
-    ----------
-    name : str
-        Of a scene, or a file, modified or not.
-    radius : float, optional
-        Of the robot, metres; 0 is none.
-    at : float, optional
-        Seconds, at which a dynamic scene is to stand still.
-    snap : bool
-        Whether ends that are not free are moved.
-
-    Examples
-    --------
-    >>> with_modifiers("maze", radius=0.5), with_modifiers("maze@turn=3", radius=1.0, snap=True)
-    ('maze@radius=0.5', 'maze@turn=3,radius=1,snap=yes')
-    >>> with_modifiers("maze", radius=0.0)
-    'maze'
-    """
-    more = [f"at={_shortest(at)}"] if at is not None else []
-    more += [f"radius={_shortest(radius)}"] if radius else []
-    more += ["snap=yes"] if snap else []
-    if not more:
-        return name
-    _, modifiers = split_modifiers(name)
-    return f"{name}{',' if modifiers else MARK}{','.join(more)}"
-
-
-def _shortest(number: float) -> str:
-    return np.format_float_positional(number, trim="-")
 
 
 def _pairs(text: str, where: str) -> Mapping[str, str]:
@@ -217,6 +211,7 @@ _EXAMPLES = {
     "unknown": "unknown=occupied or unknown=free",
     "resolution": "resolution=0.05, metres of a pixel, above 0",
     "threshold": "threshold=0.65, the share of black from which a pixel is occupied, above 0",
+    "layer": "layer=buildings, its name",
     "simplify": "simplify=0.1, metres, above 0",
 }
 
@@ -260,7 +255,11 @@ def _yes(value: str, key: str, where: str) -> bool:
 
 
 def _options(given: Mapping[str, str], where: str) -> MapOptions:
-    read: dict[str, Any] = {k: _above_zero(v, k, where) for k, v in given.items() if k != "unknown"}
+    words = ("unknown", "layer")
+    read: dict[str, Any] = {
+        key: value if key in words else _above_zero(value, key, where)
+        for key, value in given.items()
+    }
     if "unknown" in given:
         try:
             read["unknown"] = Unknown(given["unknown"])

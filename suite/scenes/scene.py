@@ -28,6 +28,7 @@ from suite.geometry.coordinates import Coordinates, coordinates_of, printed
 from suite.geometry.coverage import left_open
 from suite.geometry.growth import grown, shrunk
 from suite.geometry.kernels import PARTS, ObstacleArrays
+from suite.geometry.mesh import Mesh, mesh_of
 from suite.geometry.tolerances import LARGEST
 from suite.scenes.dynamics import Dynamics, as_text
 from suite.scenes.free_space import free_regions, nearest_free
@@ -117,7 +118,7 @@ class Scene:
 
     def __getstate__(self) -> dict[str, Any]:
         """All but what is made of it: arrays would come back writable, another type to numba."""
-        made = ("arrangement", "at_first", "regions")
+        made = ("arrangement", "at_first", "regions", "mesh")
         state = {k: v for k, v in self.__dict__.items() if k not in made}
         return state | {"properties": dict(self.properties)}
 
@@ -136,6 +137,11 @@ class Scene:
     def arrangement(self) -> Arrangement:
         """The plane divided into free space, obstacle groups and the frame."""
         return arrange(self.workspace, [p for o in self.obstacles for p in self.closed_by(o)])
+
+    @cached_property
+    def mesh(self) -> Mesh | None:
+        """Free space as triangles, for the exact solver; None if it can't be cut into any."""
+        return mesh_of(self.arrangement.free, self.coordinates)
 
     def closed_by(self, obstacle: Obstacle) -> list[Polygon]:
         """What an obstacle closes of the workspace; one that moves is cut at the border."""
@@ -240,6 +246,7 @@ def make_scene(
     inflate: float = 0.0,
     strata: Mapping[str, str] | None = None,
     keep_blocked: bool = False,
+    grown_by: float = 0.0,
 ) -> Scene:
     """Check and normalise the pieces of a scene, and put them together.
 
@@ -264,6 +271,8 @@ def make_scene(
     strata : mapping from name of a query to name of its stratum, optional
     keep_blocked : bool
         Keep queries whose ends are not free at time 0, blocked, whatever the radius.
+    grown_by : float
+        Radius of the robot by which the pieces have grown already, metres.
 
     Returns
     -------
@@ -321,12 +330,12 @@ def make_scene(
         ),
         properties=MappingProxyType(_still_true(properties or {}, inflate)),
         path=path,
-        radius=inflate,
+        radius=grown_by + inflate,
     )
     _check_closed(where, scene)
     asked = tuple(_asked(where, scene, query) for query in scene.queries)
     for query in asked:
-        if query.blocked is not None and not (keep_blocked or inflate > 0.0):
+        if query.blocked is not None and not (keep_blocked or scene.radius > 0.0):
             raise SceneError(query.blocked)
     # Not a copy: the arrangement, which is kept with the scene, took its time.
     object.__setattr__(scene, "queries", asked)
@@ -334,12 +343,9 @@ def make_scene(
 
 
 def _still_true(properties: Mapping[str, Any], inflate: float) -> dict[str, Any]:
-    """The properties without what holds for a point only, if the robot is none.
-
-    Nor is it to be grown again, by whoever reads the file that it is written to.
-    """
-    left_out = ("optimum", "radius") if inflate > 0.0 else ()
-    return {k: v for k, v in properties.items() if k not in left_out}
+    """The properties without what holds for a point only, if the robot is none."""
+    of_a_point = ("optimum", "published", "published_as")
+    return {k: v for k, v in properties.items() if inflate == 0.0 or k not in of_a_point}
 
 
 def _check_unique(where: str, what: str, names: Sequence[str]) -> None:
@@ -521,7 +527,7 @@ def renamed(scene: Scene, name: str) -> Scene:
 def _with_same_geometry(scene: Scene, **changes: Any) -> Scene:
     """A copy that keeps the arrangement, which took its time."""
     copy = replace(scene, **changes)
-    kept = ("arrangement", "regions", "hash", "coordinates")
+    kept = ("arrangement", "mesh", "regions", "hash", "coordinates")
     copy.__dict__.update({key: scene.__dict__[key] for key in kept if key in scene.__dict__})
     return copy
 

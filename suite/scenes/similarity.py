@@ -72,7 +72,7 @@ def modified(scene: Scene, modifiers: Modifiers, *, inflate: float = 0.0) -> Sce
     Parameters
     ----------
     scene : Scene
-        Not yet inflated.
+        Not yet inflated; what it has been grown by before is scaled with it.
     modifiers : Modifiers
     inflate : float
         Radius of the robot, metres; it is not scaled. See :func:`suite.scenes.scene.make_scene`.
@@ -118,6 +118,7 @@ def modified(scene: Scene, modifiers: Modifiers, *, inflate: float = 0.0) -> Sce
         inflate=inflate,
         strata={q.name: q.stratum for q in scene.queries if q.stratum is not None},
         keep_blocked=any(query.blocked is not None for query in scene.queries),
+        grown_by=scene.radius * modifiers.scale,
     )
 
 
@@ -187,7 +188,8 @@ def _moved_removal(removal: Removal | None, move: Similarity) -> Removal | None:
 
 
 def _moved_properties(scene: Scene, modifiers: Modifiers, move: Similarity) -> dict[str, Any]:
-    left_out = {"optimum"} if modifiers.scale == 1.0 else {"optimum", "paper_best"}
+    lengths = {"paper_best", "published", "published_as"}
+    left_out = {"optimum"} if modifiers.scale == 1.0 else {"optimum", *lengths}
     kept = {key: value for key, value in scene.properties.items() if key not in left_out}
     if "gates" in kept:
         kept["gates"] = {

@@ -17,7 +17,7 @@ from suite.errors import StoreError
 from suite.store.read import read_runs, stored_cell
 from suite.store.record import Cell
 from suite.store.row_names import rows_in_words
-from suite.store.schema import BELONGINGS, columns_of
+from suite.store.schema import BELONGINGS, columns_of, has_table
 from suite.store.write import Store
 
 MOST_NAMED = 5
@@ -106,6 +106,7 @@ def _merge(store: Store, source: Path) -> Merged:
         _keep_conflicts(connection, conflicts, str(source))
         connection.execute("INSERT OR IGNORE INTO main.conflicts SELECT * FROM other.conflicts")
         added = _add_missing(connection)
+        _add_scenes(connection)
     return Merged(source, added, common - len(conflicts), tuple(conflicts.values()))
 
 
@@ -171,6 +172,17 @@ def _add_missing(connection: sqlite3.Connection) -> int:
     finally:
         connection.execute("DROP TABLE missing")
     return int(added)
+
+
+def _add_scenes(connection: sqlite3.Connection) -> None:
+    """Copy the scenes that rows ran on, but those that are there."""
+    if not has_table(connection, "queries", "other"):
+        return
+    connection.execute("INSERT OR IGNORE INTO main.queries SELECT * FROM other.queries")
+    connection.execute(
+        "INSERT OR IGNORE INTO main.scenes SELECT * FROM other.scenes "
+        "WHERE digest IN (SELECT digest FROM main.queries)"
+    )
 
 
 def _copy_runs(connection: sqlite3.Connection, old: int, new: int | None) -> None:

@@ -157,6 +157,10 @@ class RunRecord:
         was ended by the clock.
     attempts : how often it was run, for want of a processor of its own; this is the record of the
         first run that had one, or else of the first of all.
+    prepare_s : CPU seconds that it took to load and arrange the scene, before any clock, in the
+        process that did it for this run: its own, or the one that it was forked from, where one
+        preparation serves all runs of the scene.
+    exact_s : CPU seconds that the exact optimum of the query took, likewise; it is made once.
     host : name of the machine.
     started_at : date and time, ISO 8601, UTC.
     improvements : what the planner reported while it ran.
@@ -190,6 +194,8 @@ class RunRecord:
     load: float | None = None
     contended: bool | None = None
     attempts: int | None = 1
+    prepare_s: float | None = None
+    exact_s: float | None = None
     host: str | None = None
     started_at: str | None = None
     improvements: tuple[Improvement, ...] = ()

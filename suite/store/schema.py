@@ -25,7 +25,7 @@ CREATE TABLE runs (
     clearance REAL, segments INTEGER, turning REAL,
     generations INTEGER, generation_of_best INTEGER, checks INTEGER, computed_checks INTEGER,
     wall_s REAL, time_to_best_s REAL, cpu_s REAL, cpu_to_best_s REAL,
-    load REAL, contended BOOLEAN, attempts INTEGER,
+    load REAL, contended BOOLEAN, attempts INTEGER, prepare_s REAL, exact_s REAL,
     planner TEXT NOT NULL, distribution TEXT NOT NULL, version TEXT NOT NULL,
     settings TEXT NOT NULL, settings_hash TEXT NOT NULL, world_settings TEXT, cold BOOLEAN NOT NULL,
     budget_wall_s REAL, budget_generations INTEGER, budget_checks INTEGER, budget_cpu_s REAL,
@@ -56,6 +56,24 @@ CREATE TABLE conflicts (
 ) WITHOUT ROWID;
 """
 
+SCENES = """
+CREATE TABLE IF NOT EXISTS scenes (
+    digest TEXT PRIMARY KEY, document BLOB NOT NULL, files TEXT
+);
+CREATE TABLE IF NOT EXISTS queries (
+    scene TEXT NOT NULL, scene_hash TEXT NOT NULL, query TEXT NOT NULL,
+    digest TEXT NOT NULL REFERENCES scenes (digest),
+    start_x REAL NOT NULL, start_y REAL NOT NULL, goal_x REAL NOT NULL, goal_y REAL NOT NULL,
+    stratum TEXT,
+    PRIMARY KEY (scene, scene_hash, query)
+) WITHOUT ROWID;
+"""
+"""Scenes that rows ran on, each once, and the queries of it that rows asked.
+
+A query is found by what a row says of it. Stores that are older are stores without: a table is made
+when they are next written to, and their rows have no scene until their matrix is run again.
+"""
+
 BELONGINGS = ("events", "traces", "paths", "simulations", "snapshots")
 """Tables that hold more of a run, by its key."""
 
@@ -66,13 +84,15 @@ def create_tables(connection: sqlite3.Connection) -> None:
     # exists whole or not at all.
     connection.execute("PRAGMA journal_mode = WAL")
     connection.executescript(
-        f"BEGIN EXCLUSIVE; {SCHEMA} PRAGMA application_id = {APPLICATION_ID};"
+        f"BEGIN EXCLUSIVE; {SCHEMA} {SCENES} PRAGMA application_id = {APPLICATION_ID};"
         f"PRAGMA user_version = {SCHEMA_VERSION}; COMMIT;"
     )
 
 
-def add_columns(connection: sqlite3.Connection) -> None:
-    """Stores that are older than a column are stores of the same version without it."""
+def add_what_is_new(connection: sqlite3.Connection) -> None:
+    """Stores that are older than a column or a table are stores of the same version without it."""
+    for statement in filter(str.strip, SCENES.split(";")):
+        connection.execute(statement)
     for table in ("runs", "wanted"):
         there = columns_of(connection, table)
         for name, kind in columns_now(table).items():
@@ -83,6 +103,11 @@ def add_columns(connection: sqlite3.Connection) -> None:
 def columns_of(connection: sqlite3.Connection, table: str, database: str = "main") -> list[str]:
     """Names of the columns that a table has in a file, which may be older than this code."""
     return [row[1] for row in connection.execute(f"PRAGMA {database}.table_info({table})")]
+
+
+def has_table(connection: sqlite3.Connection, table: str, database: str = "main") -> bool:
+    """Whether a file, which may be older than this code, has a table."""
+    return bool(columns_of(connection, table, database))
 
 
 @cache

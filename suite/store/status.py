@@ -9,10 +9,15 @@ import pandas as pd
 from suite.planner import PlanStatus
 from suite.store.read import read_conflicts, read_runs, read_sessions, read_wanted, stored_cell
 from suite.store.row_names import DIGITS
+from suite.store.scene_files import FileChange, changed_files
 from suite.store.write import is_being_written
+from suite.typed import plain
 
 MOST_FAILURES = 5
 """Failed rows that are named to people."""
+
+MOST_FILES = 5
+"""Files of scenes that are: a store that comes from elsewhere may name hundreds."""
 
 
 def status(store: Path) -> dict[str, Any]:
@@ -26,7 +31,9 @@ def status(store: Path) -> dict[str, Any]:
         ``planners``, in the order of the matrix, count wanted runs. ``failures`` are the wanted
         rows that ended in one of PlanStatus.FAILURES (all of them, if no matrix wants any): key,
         name, status and reason. ``contended`` counts the rows, of these, whose runs had no core for
-        themselves. ``writer`` says who has it open for writing, or is null.
+        themselves. ``scene_files`` are those that are gone or hold another scene than rows ran on:
+        file, change, rows, and how many of these have the scene in the store.
+        ``writer`` says who has it open for writing, or is null.
 
     Raises
     ------
@@ -56,6 +63,7 @@ def status(store: Path) -> dict[str, Any]:
             for variant, group in wanted.groupby("variant", sort=False)
         },
         "failures": _failures(runs, wanted),
+        "scene_files": [plain(change) for change in changed_files(store, runs)],
         "last_row_at": runs["started_at"].max() if len(runs) else None,
         "writer": _writer(sessions[-1] if sessions else {}) if is_being_written(store) else None,
     }
@@ -84,6 +92,7 @@ def as_text(found: dict[str, Any]) -> str:
         good = f"{tally['succeeded']} succeeded"
         lines.append(f"  {name}: {tally['done']} of {tally['wanted']}, {good}{failed}")
     lines += _failures_as_text(found["failures"])
+    lines += _files_as_text(found["scene_files"])
     if found["contended"]:
         lines.append(
             f"  {found['contended']} rows had no core for themselves; the same `kbga-bench run` "
@@ -130,6 +139,14 @@ def _failures_as_text(failures: Sequence[Mapping[str, Any]]) -> list[str]:
         lines.append(f"    {row['key'][:DIGITS]}  {row['name']}  {row['status']}{why}")
     more = len(failures) - MOST_FAILURES
     return lines + ([f"    and {more} more; --format json has all"] if more > 0 else [])
+
+
+def _files_as_text(changes: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The first files that are not what they were, those first of which the store lacks scenes."""
+    files = sorted((FileChange(**change) for change in changes), key=lambda c: c.kept == c.rows)
+    lines = [f"  {change.as_text()}" for change in files[:MOST_FILES]]
+    more = len(files) - MOST_FILES
+    return lines + ([f"  and {more} more scene files; --format json has all"] if more > 0 else [])
 
 
 def _counts(values: Any) -> dict[str, int]:

@@ -22,6 +22,9 @@ from filelock import BaseFileLock, FileLock, Timeout
 
 from suite.errors import StoreError, writing
 from suite.planner import Snapshot
+from suite.scenes.kept import digest_of, pack_scene
+from suite.scenes.scene import Query, Scene
+from suite.scenes.source_files import files_digest
 from suite.store.connection import (
     check_is_store,
     connect,
@@ -31,7 +34,7 @@ from suite.store.connection import (
 )
 from suite.store.read import read_sessions
 from suite.store.record import Cell, RunRecord, canonical_json, short_hash
-from suite.store.schema import BELONGINGS, add_columns, columns_now, create_tables
+from suite.store.schema import BELONGINGS, add_what_is_new, columns_now, create_tables
 
 RESTORES = 100
 """How often it is tried to write a store anew that is deleted again and again."""
@@ -117,6 +120,32 @@ class Store:
         with self._writing() as connection:
             connection.execute("DELETE FROM wanted WHERE matrix = ?", (matrix,))
             connection.executemany("INSERT INTO wanted VALUES (?, ?, ?, ?, ?)", rows)
+
+    def keep_scenes(self, scenes: Mapping[str, Scene], cells: Iterable[Cell]) -> None:
+        """Keep the scenes that cells are run on, each once, so that the store needs no other file.
+
+        Those of rows that are there already count too: an older store gets them so.
+
+        Parameters
+        ----------
+        scenes : mapping from the name of each scene to it
+        cells : iterable of Cell
+        """
+        wanted = {(c.scene, c.scene_hash, c.query): c.scene_source for c in cells}
+        with self._writing() as connection:
+            there = set(connection.execute("SELECT scene, scene_hash, query FROM queries"))
+            missing = {name: source for name, source in wanted.items() if name not in there}
+            digests = {
+                name: _keep_document(connection, scenes[name], source)
+                for name, source in {name: source for (name, *_), source in missing.items()}.items()
+            }
+            connection.executemany(
+                "INSERT INTO queries VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                [
+                    (scene, fingerprint, query, digests[scene], *_ends(scenes[scene].query(query)))
+                    for scene, fingerprint, query in missing
+                ],
+            )
 
     def add(self, record: RunRecord, *, replace: bool = False) -> None:
         """Write one row and all that belongs to it, whole or not at all.
@@ -279,7 +308,7 @@ def _open_for_writing(path: Path) -> sqlite3.Connection:
                 create_tables(connection)
         check_is_store(path, connection)
         with explained(path):
-            add_columns(connection)
+            add_what_is_new(connection)
     except BaseException:
         connection.close()
         raise
@@ -367,6 +396,20 @@ def _make_folder(path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StoreError(f"{path}: its folder can't be made ({error.strerror}).") from error
+
+
+def _keep_document(connection: sqlite3.Connection, scene: Scene, source: str) -> str:
+    """Keep a scene, and return the digest that it is found by."""
+    document = pack_scene(scene)
+    digest = digest_of(document)
+    connection.execute(
+        "INSERT OR IGNORE INTO scenes VALUES (?, ?, ?)", (digest, document, files_digest(source))
+    )
+    return digest
+
+
+def _ends(query: Query) -> tuple[float | str | None, ...]:
+    return (*query.start.tolist(), *query.goal.tolist(), query.stratum)
 
 
 def _as_row(record: RunRecord) -> dict[str, Any]:

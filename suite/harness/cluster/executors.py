@@ -6,7 +6,7 @@
 
 import time
 import uuid
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from concurrent.futures import (
     BrokenExecutor,
     CancelledError,
@@ -38,6 +38,7 @@ from suite.harness.provenance import package_version
 from suite.planner import PlanStatus
 from suite.plugins.from_file import named_plugins
 from suite.processes.cores import honest_jobs
+from suite.scenes.scene import Scene
 from suite.store.record import Cell, RunRecord
 
 CONNECT_S = 10.0
@@ -286,7 +287,12 @@ class Crew:
 
 @contextmanager
 def crew(
-    given: Executor | None, jobs: int | None, patience: Patience, limits: Limits, warmth: Warmth
+    given: Executor | None,
+    jobs: int | None,
+    patience: Patience,
+    limits: Limits,
+    warmth: Warmth,
+    scenes: Mapping[str, Scene],
 ) -> Iterator[Crew]:
     """Those who run a matrix: a given executor, or threads of this process while they are needed.
 
@@ -298,14 +304,16 @@ def crew(
     patience : Patience
         With this machine.
     limits, warmth : of each run. The fork server of this process begins to warm itself.
+    scenes : by their sources, those that workers elsewhere may have to be sent.
 
     Raises
     ------
     HarnessError
-        If a file that workers will need can't be read any more.
+        If a planner's file that workers will need can't be read any more.
     """
     if given is not None:
-        luggage = pack((source for source, _ in warmth.queries), named_plugins())
+        wanted = {source: scenes[source] for source, _ in warmth.queries}
+        luggage = pack(wanted, named_plugins())
         yield Crew(given, jobs, new_session(luggage), patience, limits, warmth, luggage)
         return
     start_server(warmth)

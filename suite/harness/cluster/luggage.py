@@ -3,7 +3,8 @@
 The machines of a cluster need no disk in common. The harness packs these files once, a worker that
 lacks them is sent them with a run, and each machine keeps them in folders named after what is in
 them: what numba compiles in such a folder is found again by all workers of that machine, now and
-later.
+later. A scene travels as it was read, whatever files it was read from, and needs no library there
+that reads them.
 """
 
 import hashlib
@@ -25,7 +26,8 @@ from suite.plugins.code_hash import files_beside, files_of_package
 from suite.plugins.from_file import NamedPlugin
 from suite.plugins.version_files import version_files
 from suite.scenes.catalogue import has_scene
-from suite.scenes.modifiers import MARK, split_modifiers
+from suite.scenes.kept import SUFFIX, pack_scene
+from suite.scenes.scene import Scene
 
 KEPT_S = 60 * 24 * 3600.0
 """Folders that no matrix used for so long are deleted. No matrix takes as long."""
@@ -49,10 +51,9 @@ class Parcel:
 
 @dataclass(frozen=True, slots=True)
 class PackedScene:
-    """A scene file. source : as cells name it. modifiers : those of the source, or empty."""
+    """A scene as a document. source : as cells name it."""
 
     source: str
-    modifiers: str
     parcel: Parcel
 
 
@@ -96,23 +97,27 @@ class Unpacked:
         return replace(there, queries=queries)
 
 
-def pack(sources: Iterable[str], plugins: Iterable[NamedPlugin]) -> Luggage:
-    """Read the files that runs will need.
+def pack(scenes: Mapping[str, Scene], plugins: Iterable[NamedPlugin]) -> Luggage:
+    """Pack what runs will need.
 
     Parameters
     ----------
-    sources : iterable of str
-        Of scenes, as :func:`suite.scenes.catalogue.load_scene` takes them. Those of the catalogue
-        are everywhere.
+    scenes : mapping from source to scene
+        Sources as :func:`suite.scenes.catalogue.load_scene` takes them. Those of the catalogue are
+        everywhere.
     plugins : iterable of NamedPlugin
 
     Raises
     ------
     HarnessError
-        If a file can't be read any more.
+        If a file of a planner can't be read any more.
     """
-    scenes = [_packed_scene(source) for source in sorted(set(sources)) if not has_scene(source)]
-    return Luggage(tuple(scenes), tuple(_packed_plugin(plugin) for plugin in plugins))
+    packed = [
+        _packed_scene(source, scene)
+        for source, scene in sorted(scenes.items())
+        if not has_scene(source)
+    ]
+    return Luggage(tuple(packed), tuple(_packed_plugin(plugin) for plugin in plugins))
 
 
 def unpack(luggage: Luggage) -> Unpacked:
@@ -137,19 +142,28 @@ def unpack(luggage: Luggage) -> Unpacked:
         ) from error
 
 
-def _packed_scene(source: str) -> PackedScene:
-    base, modifiers = split_modifiers(source)
-    file = Path(base)
-    return PackedScene(source, modifiers, _parcel(file.parent, [file]))
+def _packed_scene(source: str, scene: Scene) -> PackedScene:
+    # Once more, and not smaller: the document is compressed.
+    content = zlib.compress(pack_scene(scene), level=0)
+    return PackedScene(source, Parcel(((f"scene{SUFFIX}", content),)))
 
 
 def _packed_plugin(plugin: NamedPlugin) -> PackedPlugin:
-    place = _place(plugin)
+    try:
+        folder, code = _code(_place(plugin))
+        return PackedPlugin(plugin, _parcel(folder, code | version_files(code)))
+    except OSError as error:
+        raise HarnessError(
+            f"{error.filename}: can't be read, to be sent to the workers ({error.strerror}). Put "
+            "it back, and give the same command again."
+        ) from error
+
+
+def _code(place: str) -> tuple[Path, set[Path]]:
+    """The folder of a planner's code, and its files."""
     if place.endswith(".py"):
-        folder, code = Path(place).parent, files_beside(Path(place))
-    else:
-        folder, code = _folder_of_package(place), files_of_package(place)
-    return PackedPlugin(plugin, _parcel(folder, code | version_files(code)))
+        return Path(place).parent, files_beside(Path(place))
+    return _folder_of_package(place), files_of_package(place)
 
 
 def _folder_of_package(module: str) -> Path:
@@ -165,24 +179,17 @@ def _folder_of_package(module: str) -> Path:
 
 
 def _parcel(folder: Path, files: Iterable[Path]) -> Parcel:
-    try:
-        return Parcel(
-            tuple(
-                (file.relative_to(folder).as_posix(), zlib.compress(file.read_bytes()))
-                for file in sorted(files)
-            )
+    return Parcel(
+        tuple(
+            (file.relative_to(folder).as_posix(), zlib.compress(file.read_bytes()))
+            for file in sorted(files)
         )
-    except OSError as error:
-        raise HarnessError(
-            f"{error.filename}: can't be read, to be sent to the workers ({error.strerror}). Put "
-            "it back, and give the same command again."
-        ) from error
+    )
 
 
 def _scene_here(packed: PackedScene, room: Path) -> str:
     ((name, _),) = packed.parcel.files
-    here = str(_kept(packed.parcel, room) / name)
-    return f"{here}{MARK}{packed.modifiers}" if packed.modifiers else here
+    return str(_kept(packed.parcel, room) / name)
 
 
 def _plugin_here(packed: PackedPlugin, room: Path) -> NamedPlugin:

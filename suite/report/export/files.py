@@ -5,6 +5,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 import pandas as pd
 
 from suite.errors import StoreError, writing
@@ -94,13 +95,19 @@ def need_pyarrow() -> None:
 
 def paths_frame(store: Path) -> pd.DataFrame:
     """The paths of a store, a row for each waypoint: key, number, x, y."""
-    frames = [
-        pd.DataFrame({"key": key, "number": range(len(xy)), "x": xy[:, 0], "y": xy[:, 1]})
-        for key, xy in sorted(read_paths(store).items())
-    ]
-    if not frames:
+    paths = sorted(read_paths(store).items())
+    if not paths:
         return pd.DataFrame(columns=["key", "number", "x", "y"])
-    return pd.concat(frames, ignore_index=True)
+    lengths = [len(xy) for _, xy in paths]
+    points = np.concatenate([xy for _, xy in paths])
+    return pd.DataFrame(
+        {
+            "key": np.repeat([key for key, _ in paths], lengths),
+            "number": np.concatenate([np.arange(length) for length in lengths]),
+            "x": points[:, 0],
+            "y": points[:, 1],
+        }
+    )
 
 
 def made_folder(directory: Path) -> Path:

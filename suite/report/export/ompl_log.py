@@ -51,6 +51,8 @@ COLUMNS: tuple[Column, ...] = (
     ("collision checks INTEGER", lambda row: row.checks),
     ("computed checks INTEGER", lambda row: row.computed_checks),
     ("contended BOOLEAN", lambda row: row.contended),
+    ("scene preparation REAL", lambda row: row.prepare_s),
+    ("exact optimum REAL", lambda row: row.exact_s),
     ("random seed INTEGER", lambda row: row.seed),
 )
 """Names that OMPL's tools know, where there is one, and ours."""

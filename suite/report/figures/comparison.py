@@ -147,7 +147,7 @@ def plot_scatter(steps: Steps) -> Figure:
     first.set_ylim(top=ABOVE * edge)
     measured = time[np.isfinite(time) & (time > 0.0)]
     style.logarithmic_time(first, 0.7 * float(measured.min()), 1.5 * float(measured.max()))
-    no_path = _mark_no_path(first, edge)
+    no_path = mark_no_path(first, edge)
     for axes in panels.axes.values():
         axes.axhline(edge, color="#808080", linewidth=0.8)
     for (scene, planner), rows in groups.items():
@@ -163,7 +163,7 @@ def plot_scatter(steps: Steps) -> Figure:
     return panels.figure
 
 
-def _mark_no_path(axes: Axes, edge: float) -> float:
+def mark_no_path(axes: Axes, edge: float) -> float:
     """Make a tick above the gaps for the runs without a path; where it is."""
     place = edge * ABOVE**0.5
     ticks = [tick for tick in axes.get_yticks() if tick <= edge]

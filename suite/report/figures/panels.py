@@ -35,12 +35,14 @@ class Panels:
     axes: dict[str, Axes]
 
 
-def scene_panels(scenes: Sequence[str]) -> Panels:
+def scene_panels(scenes: Sequence[str], *, share_x: bool = True) -> Panels:
     """Make a figure with a panel for each scene, of at most PANELS_AT_MOST.
 
     Parameters
     ----------
     scenes : sequence of str
+    share_x : bool
+        Whether all have the same horizontal axis.
     """
     shown = list(scenes)[:PANELS_AT_MOST]
     columns = min(COLUMNS, len(shown))
@@ -51,7 +53,7 @@ def scene_panels(scenes: Sequence[str]) -> Panels:
         columns,
         # A single panel must hold the title above it.
         figsize=(max(1.0 + 2.3 * columns, 6.4), 1.4 + height * rows),
-        sharex=True,
+        sharex=share_x,
         sharey=True,
         squeeze=False,
         layout="constrained",

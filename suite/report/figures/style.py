@@ -119,7 +119,12 @@ def legend_below(figure: Figure, **options: Any) -> None:
 
 
 def legend(
-    figure: Figure, planners: Mapping[str, int], how_to_read: str, *, only_markers: bool = False
+    figure: Figure,
+    planners: Mapping[str, int],
+    how_to_read: str,
+    *,
+    only_markers: bool = False,
+    only_lines: bool = False,
 ) -> None:
     """Say below a figure how to read it, and name the planners, as :func:`look` draws them.
 
@@ -130,10 +135,10 @@ def legend(
         See :func:`numbered`. Empty, if the figure names them itself.
     how_to_read : str
         Is broken into lines.
-    only_markers : bool
-        Whether the figure has no lines.
+    only_markers, only_lines : bool
+        Whether the figure has no lines, or no markers.
     """
-    line = {"linestyle": "none"} if only_markers else {}
+    line = {"linestyle": "none"} if only_markers else {"marker": "none"} if only_lines else {}
     longest = max(map(len, planners), default=0)
     columns = int(figure.get_figwidth() * CHARACTERS_PER_INCH / (longest + HANDLE))
     figure.legend(

@@ -5,13 +5,6 @@ for (const figure of document.querySelectorAll("[data-chart]")) {
   const [scene, clock] = ["scene", "clock"].map((name) => figure.querySelector(`[data-choice=${name}]`));
   const boxes = [...figure.querySelectorAll("input[type=checkbox]")];
   const silent = figure.querySelector("[data-silent]");
-  const config = {
-    responsive: true,
-    displaylogo: false,
-    // Named one by one: among plotly's own there is one that sends the chart away.
-    modeBarButtons: [["toImage", "zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"]],
-    plotlyServerURL: "",
-  };
 
   const draw = () => {
     const here = lines.filter((line) => line.scene === scene.value && line.clock === clock.value);
@@ -22,7 +15,7 @@ for (const figure of document.querySelectorAll("[data-chart]")) {
     silent.textContent = missing.length
       ? `Not drawn here, for they found no path or do not count: ${missing.join(", ")}.`
       : "";
-    Plotly.react(figure.querySelector(".plot"), shown.map((line) => line.trace), layouts[clock.value], config);
+    Plotly.react(figure.querySelector(".plot"), shown.map((line) => line.trace), layouts[clock.value], plotlyConfig);
   };
 
   const choose = (all) => {
@@ -30,8 +23,10 @@ for (const figure of document.querySelectorAll("[data-chart]")) {
     draw();
   };
 
-  for (const control of [scene, clock, ...boxes]) control.addEventListener("change", draw);
-  for (const button of figure.querySelectorAll("[data-all]"))
-    button.addEventListener("click", () => choose(button.dataset.all === "yes"));
-  draw();
+  plotlyThere.then(() => {
+    for (const control of [scene, clock, ...boxes]) control.addEventListener("change", draw);
+    for (const button of figure.querySelectorAll("[data-all]"))
+      button.addEventListener("click", () => choose(button.dataset.all === "yes"));
+    draw();
+  });
 }

@@ -222,18 +222,18 @@ def _edge(look: Appearance, fill: str = "none") -> dict[str, Any]:
 
 def _gap_layout(label: str, x: Array, bands: Iterable[Array]) -> dict[str, Any]:
     medians = 100.0 * np.array([band[1] for band in bands])
-    ends, ticks = gap_scale(medians)
-    return _layout(
-        label,
-        x,
-        {
-            "title": {"text": "gap to the optimum (%)"},
-            "type": "log",
-            "range": np.log10(ends).tolist(),
-            "tickvals": ticks,
-            "ticktext": [gap_text(tick) for tick in ticks],
-        },
-    )
+    return _layout(label, x, gap_axis(*gap_scale(medians)))
+
+
+def gap_axis(ends: tuple[float, float], ticks: list[float]) -> dict[str, Any]:
+    """A logarithmic axis of gaps, per cent; see :func:`suite.report.figures.style.gap_scale`."""
+    return {
+        "title": {"text": "gap to the optimum (%)"},
+        "type": "log",
+        "range": np.log10(ends).tolist(),
+        "tickvals": ticks,
+        "ticktext": [gap_text(tick) for tick in ticks],
+    }
 
 
 def _share_layout(label: str, x: Array) -> dict[str, Any]:
@@ -241,22 +241,27 @@ def _share_layout(label: str, x: Array) -> dict[str, Any]:
 
 
 def _layout(label: str, x: Array, y_axis: dict[str, Any]) -> dict[str, Any]:
-    rules = {"gridcolor": RULES, "linecolor": INK, "zeroline": False, "automargin": True}
     ends = [float(np.log10(x[0])), float(np.log10(x[-1]))]
     decades = 10.0 ** np.arange(np.ceil(ends[0]), np.floor(ends[1]) + 1)
+    x_axis = {
+        "title": {"text": label},
+        "type": "log",
+        "range": ends,
+        "tickvals": decades.tolist(),
+        "ticktext": [plain_number(decade) for decade in decades],
+        "unifiedhovertitle": {"text": f"{label}: %{{x:.3~g}}"},
+    }
+    return plain_layout(x_axis, y_axis, "x unified")
+
+
+def plain_layout(x_axis: dict[str, Any], y_axis: dict[str, Any], hover: str) -> dict[str, Any]:
+    """How all charts of the page look, around two axes."""
+    rules = {"gridcolor": RULES, "linecolor": INK, "zeroline": False, "automargin": True}
     layout = go.Layout(
-        xaxis={
-            "title": {"text": label},
-            "type": "log",
-            "range": ends,
-            "tickvals": decades.tolist(),
-            "ticktext": [plain_number(decade) for decade in decades],
-            "unifiedhovertitle": {"text": f"{label}: %{{x:.3~g}}"},
-            **rules,
-        },
+        xaxis={**x_axis, **rules},
         yaxis={**y_axis, **rules},
         showlegend=False,
-        hovermode="x unified",
+        hovermode=hover,
         dragmode=False,
         margin={"l": 56, "r": 12, "t": 12, "b": 48},
         font={"family": "system-ui, sans-serif", "size": 13, "color": INK},
@@ -276,7 +281,12 @@ def _corners(*rows: Array) -> NDArray[np.bool_]:
 
 
 def _rounded(values: Array) -> list[float]:
-    return [float(f"{value:.{DIGITS}g}") for value in values.tolist()]
+    return list(map(short, values.tolist()))
+
+
+def short(value: float) -> float:
+    """A number with as many digits as a chart shows."""
+    return float(f"{value:.{DIGITS}g}")
 
 
 def _see_through(colour: str) -> str:

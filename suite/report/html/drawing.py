@@ -9,6 +9,9 @@ from shapely.geometry import Polygon
 
 from suite.scenes.scene import Query, Scene
 
+Place = tuple[int, int]
+"""In the units of a picture."""
+
 LONGER_SIDE = 1000.0
 MARGIN = 25
 """Around the workspace, for the marks of start and goal."""
@@ -16,19 +19,16 @@ MARGIN = 25
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Drawing:
-    """A scene with one of its queries, to be put below paths.
+    """A scene, to be put below paths.
 
     view_box : of the picture.
     room, obstacles : outlines, with holes by the even-odd rule.
-    start, goal : (x, y) in the units of the picture.
     left, top, scale : what turns metres into these units.
     """
 
     view_box: str
     room: str
     obstacles: str
-    start: tuple[int, int]
-    goal: tuple[int, int]
     left: float
     top: float
     scale: float
@@ -42,18 +42,23 @@ class Drawing:
         """
         return _outline(_units(path, self.left, self.top, self.scale))
 
+    def ends(self, query: Query) -> tuple[Place, Place]:
+        """Where the start and the goal of a query are."""
+        points = np.array([query.start, query.goal])
+        start, goal = _units(points, self.left, self.top, self.scale).tolist()
+        return (start[0], start[1]), (goal[0], goal[1])
+
     def outlines(self, paths: Iterable[NDArray[np.float64]]) -> str:
         """Several paths as one."""
         return "".join(map(self.outline, paths))
 
 
-def draw(scene: Scene, query: Query) -> Drawing:
+def draw(scene: Scene) -> Drawing:
     """Draw a scene.
 
     Parameters
     ----------
     scene : Scene
-    query : Query
     """
     xmin, ymin, xmax, ymax = scene.bounds
     scale = LONGER_SIDE / max(xmax - xmin, ymax - ymin)
@@ -66,13 +71,10 @@ def draw(scene: Scene, query: Query) -> Drawing:
             for ring in rings
         )
 
-    start, goal = _units(np.array([query.start, query.goal]), xmin, ymax, scale).tolist()
     return Drawing(
         f"{-MARGIN} {-MARGIN} {width + 2 * MARGIN} {height + 2 * MARGIN}",
         closed(scene.workspace),
         "".join(closed(obstacle.polygon) for obstacle in scene.obstacles),
-        (start[0], start[1]),
-        (goal[0], goal[1]),
         xmin,
         ymax,
         scale,
@@ -85,4 +87,6 @@ def _units(xy: NDArray[np.float64], left: float, top: float, scale: float) -> ND
 
 
 def _outline(units: NDArray[np.int64]) -> str:
-    return "M" + "L".join(f"{x} {y}" for x, y in units.tolist())
+    # Of a large map many corners come to lie on each other.
+    moved = np.append(True, (units[1:] != units[:-1]).any(axis=1))
+    return "M" + "L".join(f"{x} {y}" for x, y in units[moved].tolist())

@@ -7,7 +7,7 @@ from suite.errors import KbgaBenchError
 from suite.report.figures.files import as_png
 from suite.report.figures.simulation import plot_snapshots
 from suite.report.html.evidence import Evidence
-from suite.scenes.catalogue import scene_as_it_was
+from suite.report.rows import places
 from suite.simulation.record import from_data
 from suite.store.read import read_simulation
 
@@ -34,7 +34,8 @@ def drive_sheets(evidence: Evidence) -> tuple[list[DriveSheet], int]:
     ----------
     evidence : Evidence
     """
-    first = evidence.driven.drop_duplicates(["scene_source", "query", "world"])
+    driven = evidence.driven
+    first = driven.assign(place=places(driven)).drop_duplicates(["scene_source", "place", "world"])
     shown = first[:SHEETS_AT_MOST].to_dict("records")
     sheets = []
     for row in shown:
@@ -44,7 +45,7 @@ def drive_sheets(evidence: Evidence) -> tuple[list[DriveSheet], int]:
             f"{row['variant']}: the run ended as {row['status']}."
         )
         try:
-            scene, _ = scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])
+            scene, _ = evidence.scenes.of(row)
             data = read_simulation(evidence.store, row["key"])
         except KbgaBenchError as error:
             sheets.append(DriveSheet(title, alt, "", f"It can't be drawn: {error}"))

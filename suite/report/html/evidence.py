@@ -12,7 +12,7 @@ from suite.planner import Snapshot
 from suite.report.all_tables import read_tables
 from suite.report.figures.style import numbered
 from suite.report.optima import check_optima
-from suite.report.rows import is_simulated, newest
+from suite.report.rows import is_blocked, is_simulated, newest
 from suite.report.statistics.anytime import Steps, steps_of
 from suite.report.statistics.clock import fair
 from suite.report.table import Table
@@ -25,6 +25,7 @@ from suite.store.read import (
     read_snapshots,
     read_wanted,
 )
+from suite.store.scenes import KeptScenes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,7 +35,8 @@ class Evidence:
     store : its file.
     runs : all rows.
     current : those of the newest version of each scene and planner.
-    steps : the current runs that were not simulated, as step functions.
+    steps : the current runs that were not simulated, as step functions; without those of queries
+        that can't be asked.
     planners : number of each planner, which chooses its colour and line everywhere.
     tables : all tables.
     paths : by key, (n, 2) float64, metres.
@@ -42,6 +44,7 @@ class Evidence:
     wanted : what the matrices want.
     conflicts : number of rows of other stores that say something else.
     sessions : provenance.
+    scenes : that the rows ran on.
     """
 
     store: Path
@@ -55,11 +58,12 @@ class Evidence:
     wanted: pd.DataFrame
     conflicts: int
     sessions: list[dict[str, Any]]
+    scenes: KeptScenes
 
     @property
     def driven(self) -> pd.DataFrame:
         """The current runs that were simulated."""
-        return fair(self.current[is_simulated(self.current)])
+        return fair(self.current[is_simulated(self.current) & ~is_blocked(self.current)])
 
 
 def read_evidence(store: Path, reference: str | None = None) -> Evidence:
@@ -81,11 +85,12 @@ def read_evidence(store: Path, reference: str | None = None) -> Evidence:
     runs, events = read_runs(store), read_events(store)
     current = newest(runs)
     check_optima(current)
+    planned = current[~is_simulated(current) & ~is_blocked(current)]
     return Evidence(
         store=store,
         runs=runs,
         current=current,
-        steps=steps_of(fair(current[~is_simulated(current)]), events),
+        steps=steps_of(fair(planned), events),
         planners=numbered(current["variant"]),
         tables=[] if runs.empty else read_tables(store, reference, runs=runs, events=events),
         paths=read_paths(store),
@@ -93,4 +98,5 @@ def read_evidence(store: Path, reference: str | None = None) -> Evidence:
         wanted=read_wanted(store),
         conflicts=len(read_conflicts(store)),
         sessions=read_sessions(store),
+        scenes=KeptScenes(store),
     )

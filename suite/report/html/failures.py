@@ -5,7 +5,7 @@ from typing import Any
 import pandas as pd
 
 from suite.planner import PlanStatus
-from suite.report.rows import places
+from suite.report.rows import is_blocked, places
 from suite.report.table import Table
 from suite.report.words import some_of
 
@@ -13,11 +13,14 @@ REASONS_AT_MOST = 30
 """Told in full; of more there is the last line."""
 
 NOTE = (
-    "A row for each planner, status and last line of the reason; first those that failed, which "
+    "A row for each planner, status and last line of the reason, of which those that differ in "
+    "numbers alone are one; first those that failed, which "
     "`kbga-bench run --only-failed` does again. exhausted: the budget or the planner's own stop "
     "criterion ended the run without path, which is no fault of the program; nor is refused. "
     "Example: the key of one such row; `kbga-bench rerun STORE KEY` repeats it."
 )
+
+_NUMBERS = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 
 WITHOUT_REASON = "no path within the budget or the planner's own stop criterion"
 
@@ -36,10 +39,10 @@ def failures_table(runs: pd.DataFrame) -> Table:
             "status": status,
             "runs": len(group),
             "scenes": some_of(group["place"], 4),
-            "reason": reason,
+            "reason": group["last"].iloc[0],
             "example": group["key"].iloc[0],
         }
-        for (planner, status, reason), group in _groups(runs)
+        for (planner, status, _), group in _groups(runs)
     ]
     frame = pd.DataFrame(rows, columns=["planner", "status", "runs", "scenes", "reason", "example"])
     frame = frame.sort_values("runs", ascending=False, kind="stable")
@@ -57,18 +60,20 @@ def full_reasons(runs: pd.DataFrame) -> list[tuple[str, str]]:
     runs : DataFrame
     """
     found = []
-    for (planner, status, reason), group in _groups(runs):
+    for (planner, status, _), group in _groups(runs):
         first = group.iloc[0]
         texts = [str(first["reason"] or ""), str(first["stderr"] or "")]
         text = "\n\n".join(part for part in texts if part.strip())
-        if text.strip() != reason and status != PlanStatus.EXHAUSTED:
+        if text.strip() != first["last"] and status != PlanStatus.EXHAUSTED:
             label = f"{planner} on {first['place']}, seed {first['seed']}: {status}"
             found.append((label, text))
     return found[:REASONS_AT_MOST]
 
 
 def _groups(runs: pd.DataFrame) -> Any:
-    lost = runs.assign(place=places(runs))[~runs["status"].isin(PlanStatus.SUCCESSES)]
+    # A query that can't be asked is no failure of a planner.
+    asked = runs[~is_blocked(runs)]
+    lost = asked.assign(place=places(asked))[~asked["status"].isin(PlanStatus.SUCCESSES)]
     last = lost["reason"].fillna("").astype(str).str.strip().str.rsplit("\n", n=1).str[-1]
     missing = (
         lost["status"]
@@ -76,4 +81,6 @@ def _groups(runs: pd.DataFrame) -> Any:
         .where(lambda text: text == WITHOUT_REASON, "no reason was given")
     )
     lost = lost.assign(last=last.where(last != "", missing))
-    return lost.groupby(["variant", "status", "last"], sort=False)
+    # On a map of many queries a reason comes with many places: it is one all the same.
+    lost = lost.assign(alike=lost["last"].str.replace(_NUMBERS, "0", regex=True))
+    return lost.groupby(["variant", "status", "alike"], sort=False)

@@ -1,10 +1,14 @@
 """What the store does not hold, counted: a reader must know what a table does not speak of."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 
 from suite.report.html.evidence import Evidence
+from suite.report.html.maps import MapPanel
 from suite.report.html.scenes import ScenePicture
+from suite.report.rows import is_blocked, is_of_map
 from suite.report.statistics.clock import by_the_clock
 from suite.report.table import Table
 from suite.report.words import some_of
@@ -12,13 +16,13 @@ from suite.report.words import some_of
 NAMES_AT_MOST = 8
 
 
-def missing_table(evidence: Evidence, pictures: list[ScenePicture]) -> Table:
+def missing_table(evidence: Evidence, pictures: Sequence[ScenePicture | MapPanel]) -> Table:
     """What is missing: a row for each kind, also where nothing is.
 
     Parameters
     ----------
     evidence : Evidence
-    pictures : list of ScenePicture
+    pictures : sequence of ScenePicture or MapPanel
     """
     rows = [
         _not_done(evidence),
@@ -27,6 +31,7 @@ def missing_table(evidence: Evidence, pictures: list[ScenePicture]) -> Table:
         _without_count(evidence, "generation"),
         _without_count(evidence, "checks"),
         _without_optimum(evidence),
+        _blocked(evidence),
         _not_drawn(pictures),
         _contended(evidence),
         _conflicts(evidence),
@@ -83,13 +88,32 @@ def _without_count(evidence: Evidence, clock: str) -> _Row:
 
 
 def _without_optimum(evidence: Evidence) -> _Row:
-    runs = evidence.steps.runs[np.isnan(evidence.steps.optimum)]
-    names = list(dict.fromkeys(runs["place"]))
+    runs = evidence.steps.runs
+    runs = runs.assign(on_map=is_of_map(runs))[np.isnan(evidence.steps.optimum)]
+    queries = runs[["place", "query", "on_map"]].drop_duplicates()
     follows = "no path exists, or no run came far enough to be told it; there is no gap"
-    return "scenes without an optimum", len(names), some_of(names, NAMES_AT_MOST), follows
+    return "queries without an optimum", len(queries), _named(queries), follows
 
 
-def _not_drawn(pictures: list[ScenePicture]) -> _Row:
+def _blocked(evidence: Evidence) -> _Row:
+    runs = evidence.current
+    runs = runs[is_blocked(runs)].rename(columns={"scene": "place"})
+    queries = runs[["place", "query"]].drop_duplicates().assign(on_map=True)
+    follows = "a start or a goal is not free; they count for no planner and against none"
+    return "queries that can't be asked", len(queries), _named(queries), follows
+
+
+def _named(queries: pd.DataFrame) -> str:
+    """Places of queries; of a map with their number."""
+    counts = queries.groupby(["place", "on_map"], sort=False).size()
+    names = [
+        f"{place} {number}" if on_map else str(place)
+        for (place, on_map), number in zip(counts.index.tolist(), counts.tolist(), strict=True)
+    ]
+    return some_of(names, NAMES_AT_MOST)
+
+
+def _not_drawn(pictures: Sequence[ScenePicture | MapPanel]) -> _Row:
     names = [picture.name for picture in pictures if picture.drawing is None]
     return (
         "scenes that are gone or have changed since",

@@ -11,10 +11,14 @@ from suite.report.figures.style import LEAST_GAP
 from suite.report.html.cells import Sheet, sheet
 from suite.report.html.evidence import Evidence
 from suite.report.html.shades import shaded
+from suite.report.rows import is_blocked
 from suite.report.table import Table
 from suite.report.tables.glance import at_a_glance
 from suite.report.tables.summary import summary
 from suite.report.words import fixed, of_some
+
+BLOCKED = "query blocked"
+"""Refused as the query can't be asked, which is no matter of the planner."""
 
 GAP_NOTE = (
     "Mean gap of the paths found to the exact shortest one, per cent: 0 is optimal. In brackets "
@@ -31,9 +35,12 @@ def headline(evidence: Evidence) -> str:
     solved = int((runs["status"] == PlanStatus.SOLVED).sum())
     matrices = list(dict.fromkeys(str(s.get("matrix")) for s in evidence.sessions if "matrix" in s))
     of = f" of {', '.join(matrices)}" if matrices else ""
+    queries = len(runs[["scene", "query"]].drop_duplicates())
+    asked = f", {queries:,} queries" if queries > runs["scene"].nunique() else ""
+    planners, scenes, seeds = (runs[name].nunique() for name in ("variant", "scene", "seed"))
     return (
-        f"{_count(len(runs), 'run')}{of}: {_count(runs['variant'].nunique(), 'planner')} in "
-        f"{_count(runs['scene'].nunique(), 'scene')}, {_count(runs['seed'].nunique(), 'seed')}. "
+        f"{_count(len(runs), 'run')}{of}: {_count(planners, 'planner')} in "
+        f"{_count(scenes, 'scene')}{asked}, {_count(seeds, 'seed')}. "
         f"{_count(solved, 'run')} ended with a path that the referee accepts."
     )
 
@@ -63,8 +70,9 @@ def _number(row: Mapping[Any, Any]) -> str:
 
 def _by_status(runs: pd.DataFrame) -> pd.DataFrame:
     order = dict.fromkeys(runs["variant"])
-    counts = pd.crosstab(runs["variant"], runs["status"]).reindex(list(order))
-    words = [str(status) for status in PlanStatus if str(status) in counts.columns]
+    ended = runs["status"].where(~is_blocked(runs), BLOCKED)
+    counts = pd.crosstab(runs["variant"], ended).reindex(list(order))
+    words = [str(word) for word in (*PlanStatus, BLOCKED) if str(word) in counts.columns]
     counts = counts[words]
     counts.insert(0, "runs", counts.sum(axis=1))
     return counts.rename_axis("planner").rename_axis(None, axis=1).reset_index()

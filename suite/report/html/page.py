@@ -3,6 +3,8 @@
 The same store gives the same bytes: no time, no random name, nothing of the machine that made it.
 """
 
+import base64
+import gzip
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -19,6 +21,7 @@ from suite.report.html.charts import convergence_chart, ecdf_chart
 from suite.report.html.drives import drive_sheets
 from suite.report.html.evidence import Evidence, read_evidence
 from suite.report.html.failures import failures_table, full_reasons
+from suite.report.html.maps import map_panels
 from suite.report.html.missing import missing_table
 from suite.report.html.overview import headline, overview_sheets
 from suite.report.html.player import played_runs
@@ -26,7 +29,7 @@ from suite.report.html.provenance import provenance_tables
 from suite.report.html.scenes import scene_pictures
 
 SUFFIXES = (".html", ".htm")
-SCRIPTS = ("tables.js", "charts.js", "player.js")
+SCRIPTS = ("tables.js", "plotly.js", "charts.js", "maps.js", "player.js")
 
 
 def write_report(store: Path, file: Path, *, reference: str | None = None) -> None:
@@ -64,7 +67,8 @@ def render_report(evidence: Evidence) -> str:
         "ecdf": ecdf_chart(evidence.steps, evidence.planners),
     }
     pictures, pictures_left_out = scene_pictures(evidence)
-    played, played_left_out = played_runs(evidence, pictures)
+    maps, maps_left_out = map_panels(evidence, len(pictures))
+    played, played_left_out = played_runs(evidence, [*pictures, *maps])
     drives, drives_left_out = drive_sheets(evidence)
     return (
         _environment()
@@ -75,6 +79,8 @@ def render_report(evidence: Evidence) -> str:
             overview=overview_sheets(evidence),
             pictures=pictures,
             pictures_left_out=pictures_left_out,
+            maps=maps,
+            maps_left_out=maps_left_out,
             charts=charts,
             planned=not evidence.steps.runs.empty or evidence.runs.empty,
             looks={name: appearance(number) for name, number in evidence.planners.items()},
@@ -82,16 +88,24 @@ def render_report(evidence: Evidence) -> str:
             played_left_out=played_left_out,
             drives=drives,
             drives_left_out=drives_left_out,
-            tables=[sheet(table) for table in evidence.tables],
+            tables=[sheet(table) for table in evidence.tables if table.on_page],
+            in_files=[table.name for table in evidence.tables if not table.on_page],
             failures=sheet(failures_table(evidence.runs)),
             reasons=full_reasons(evidence.runs),
-            missing=sheet(missing_table(evidence, pictures)),
+            missing=sheet(missing_table(evidence, [*pictures, *maps])),
             provenance=[sheet(table) for table in provenance_tables(evidence)],
             style=Markup(_text("style.css")),
             scripts=[Markup(_text(name)) for name in SCRIPTS],
-            plotly=Markup(get_plotlyjs()) if any(charts.values()) else None,
+            plotly=_packed_plotly() if any(charts.values()) or maps else None,
         )
     )
+
+
+@cache
+def _packed_plotly() -> str:
+    """Plotly's script, compressed: two thirds of the page would be it."""
+    # The time in a gzip file would make another page each time.
+    return base64.b64encode(gzip.compress(get_plotlyjs().encode(), mtime=0)).decode()
 
 
 @cache

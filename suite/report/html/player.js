@@ -43,10 +43,14 @@ for (const player of document.querySelectorAll("[data-player]")) {
 
   function choose() {
     stop();
-    const { scene, viewBox, frames } = run();
+    const { scene, viewBox, ends, frames } = run();
     stage.setAttribute("viewBox", viewBox);
     find("[data-room]").setAttribute("href", `#scene-${scene}`);
-    find("[data-ends]").setAttribute("href", `#ends-${scene}`);
+    ["start", "goal"].forEach((end, i) => {
+      const [x, y] = ends[i];
+      find(`[data-end=${end}]`).setAttribute("x", x);
+      find(`[data-end=${end}]`).setAttribute("y", y);
+    });
     slider.max = frames.length - 1;
     slider.value = 0;
     show(false);

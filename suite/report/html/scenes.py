@@ -9,10 +9,9 @@ import pandas as pd
 
 from suite.errors import KbgaBenchError
 from suite.report.html.appearance import PLANNERS_AT_MOST, Appearance, appearance
-from suite.report.html.drawing import Drawing, draw
+from suite.report.html.drawing import Drawing, Place, draw
 from suite.report.html.evidence import Evidence
-from suite.report.rows import cheapest, feasible
-from suite.scenes.catalogue import scene_as_it_was
+from suite.report.rows import cheapest, feasible, is_of_map
 
 SCENES_AT_MOST = 40
 """A page of more is not looked at."""
@@ -54,6 +53,7 @@ class ScenePicture:
 
     number : names its drawing in the page.
     drawing : None if the scene can't be drawn; then ``reason`` says why.
+    ends : where start and goal are in the drawing.
     optimum : metres; None if there is none.
     paths : of each planner that ran there.
     """
@@ -62,6 +62,7 @@ class ScenePicture:
     name: str
     drawing: Drawing | None
     reason: str
+    ends: tuple[Place, ...]
     optimum: float | None
     paths: Sequence[BestPath]
 
@@ -76,7 +77,7 @@ class ScenePicture:
 
 
 def scene_pictures(evidence: Evidence) -> tuple[list[ScenePicture], int]:
-    """The scenes, and how many more there are than a page should have.
+    """The scenes but the maps, and how many more there are than a page should have.
 
     Parameters
     ----------
@@ -84,7 +85,7 @@ def scene_pictures(evidence: Evidence) -> tuple[list[ScenePicture], int]:
     """
     # Those of the newest rows: a scene that changed since its rows were made is not drawn.
     runs = evidence.steps.runs
-    groups = list(runs.groupby("place", sort=False))
+    groups = list(runs[~is_of_map(runs)].groupby("place", sort=False))
     shown = [
         _picture(number, str(name), group, evidence)
         for number, (name, group) in enumerate(groups[:SCENES_AT_MOST])
@@ -94,27 +95,35 @@ def scene_pictures(evidence: Evidence) -> tuple[list[ScenePicture], int]:
 
 def _picture(number: int, name: str, runs: pd.DataFrame, evidence: Evidence) -> ScenePicture:
     optimum = runs["optimum"].max()
-    drawing, reason = _drawing(runs.iloc[0])
+    drawing, ends, reason = _drawing(runs.iloc[0], evidence)
     return ScenePicture(
         number,
         name,
         drawing,
         reason,
+        ends,
         None if pd.isna(optimum) else float(optimum),
-        _best_paths(runs, drawing, evidence),
+        best_paths(runs, drawing, evidence),
     )
 
 
-def _drawing(row: "pd.Series[Any]") -> tuple[Drawing | None, str]:
+def _drawing(
+    row: "pd.Series[Any]", evidence: Evidence
+) -> tuple[Drawing | None, tuple[Place, ...], str]:
     try:
-        return draw(*scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])), ""
+        scene, query = evidence.scenes.of(row.to_dict())
     except KbgaBenchError as error:
-        return None, f"It can't be drawn: {error}"
+        return None, (), f"It can't be drawn: {error}"
+    drawing = draw(scene)
+    return drawing, drawing.ends(query), ""
 
 
-def _best_paths(runs: pd.DataFrame, drawing: Drawing | None, evidence: Evidence) -> list[BestPath]:
+def best_paths(
+    runs: pd.DataFrame, drawing: Drawing | None, evidence: Evidence, widest: float = WIDEST
+) -> list[BestPath]:
+    """The cheapest path of each planner in the runs of one query."""
     groups = list(runs.groupby("variant", sort=False))[:PLANNERS_AT_MOST]
-    widths = np.linspace(WIDEST, THINNEST, max(len(groups), 2)).round(1)
+    widths = np.linspace(widest, THINNEST, max(len(groups), 2)).round(1)
     found = []
     for width, (planner, group) in zip(widths, groups, strict=False):
         best = cheapest(group)

@@ -37,6 +37,9 @@ AT_ONCE = 1_000_000
 CONSTANT = 0
 """In the place of a number of runs: they all came out the same, and are a constant."""
 
+SIGNS_AT_MOST = 100
+"""Differences whose signs are all counted: the time grows with the third power of their number."""
+
 ORDERS_AT_MOST = 4000
 """Of two samples with ties: fewer are all counted, as the normal distribution is too kind there."""
 
@@ -251,7 +254,8 @@ def signed_rank(differences: Array) -> float:
     Returns
     -------
     float
-        1 if none is left. Exact, ties or not: all signs are counted.
+        1 if none is left. Exact, ties or not: all signs are counted. Of more than
+        :data:`SIGNS_AT_MOST` it is the normal distribution's, with the variance that the ties have.
 
     Examples
     --------
@@ -263,12 +267,23 @@ def signed_rank(differences: Array) -> float:
         return 1.0
     # Twice a rank is a whole number, also where ranks tie.
     ranks = np.rint(2.0 * stats.rankdata(np.abs(there))).astype(np.int64)
+    if len(there) > SIGNS_AT_MOST:
+        return _normal_signed_rank(ranks.astype(np.float64), there > 0.0)
     ways = np.ones(1)
     for rank in ranks:
         ways = np.append(ways, np.zeros(rank)) + np.append(np.zeros(rank), ways)
     positive = int(ranks[there > 0.0].sum())
     low = min(positive, int(ranks.sum()) - positive)
     return float(min(1.0, 2.0 * ways[: low + 1].sum() / ways.sum()))
+
+
+def _normal_signed_rank(ranks: Array, is_positive: NDArray[np.bool_]) -> float:
+    """The same of many differences: their signed ranks have nearly a normal sum."""
+    # Each sign is a fair coin: the variance of the sum of the positive ranks is exact.
+    off = abs(float(ranks[is_positive].sum() - 0.5 * ranks.sum()))
+    deviation = 0.5 * float(np.sqrt((ranks**2).sum()))
+    # Doubled ranks are whole: sums are one apart, and half of that is the correction.
+    return float(min(1.0, 2.0 * stats.norm.sf(max(off - 0.5, 0.0) / deviation)))
 
 
 @cache

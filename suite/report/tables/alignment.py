@@ -23,6 +23,9 @@ and more of them as a share of the gap as drawn."""
 CONTROL = "_aligned"
 """What the name of a control ends in."""
 
+MOVES = ("turn", "shift", "scale", "twin")
+"""Modifiers that leave the problem as it is."""
+
 HOLDS, DIFFERS, NOT_COMPARABLE = "holds", "differs", "not comparable"
 
 NOTE = (
@@ -55,7 +58,16 @@ def without_repeats(runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def _unmoved(scene: str) -> str:
-    return scene.partition(MARK)[0]
+    """The scene as it is drawn; what makes it another problem stays, a radius say.
+
+    Examples
+    --------
+    >>> _unmoved("zigzag@twin=3"), _unmoved("tb3@radius=0.2"), _unmoved("tb3@radius=0.2,turn=7")
+    ('zigzag', 'tb3@radius=0.2', 'tb3@radius=0.2')
+    """
+    base, _, modifiers = scene.partition(MARK)
+    kept = [part for part in modifiers.split(",") if part.partition("=")[0].strip() not in MOVES]
+    return MARK.join(filter(None, [base, ",".join(kept)]))
 
 
 def _uncontrolled(scene: str) -> str:
@@ -78,8 +90,8 @@ def alignment(runs: pd.DataFrame) -> pd.DataFrame:
     """
     if runs.empty:
         return pd.DataFrame()
-    moved = runs["scene"].str.contains(MARK, regex=False)
     drawn = runs.assign(scene=runs["scene"].map(_unmoved))
+    moved = drawn["scene"] != runs["scene"]
     drawn = drawn.assign(moved=moved, as_run=runs["scene"], place=places(drawn))
     rows = [
         _row(str(place), str(planner), group, drawn)

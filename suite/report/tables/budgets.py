@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from suite.report.rows import maps_note
 from suite.report.statistics.anytime import Steps, cost_at, on_clock
 from suite.report.statistics.clock import untimed_note
 from suite.report.statistics.inference import Array
@@ -90,7 +91,7 @@ def budget_tables(steps: Steps) -> list[Table]:
     if frame.empty:
         return []
     title = "Paths found, and their gap, after a fixed wall time"
-    told = joined(NOTE, untimed_note(steps.runs))
+    told = joined(NOTE, maps_note(steps.runs), untimed_note(steps.runs))
     rows = Table("fixed-budget-rows", title, frame, told, detail=True)
     if frame["scene"].nunique() > SIDE_BY_SIDE:
         return [rows]

@@ -15,6 +15,7 @@ import pandas as pd
 from scipy import stats
 
 from suite.planner import PlanStatus
+from suite.report.rows import maps_note
 from suite.report.statistics.anytime import Steps, final_gaps, first_within
 from suite.report.statistics.clock import by_the_clock
 from suite.report.statistics.inference import (
@@ -28,7 +29,7 @@ from suite.report.statistics.inference import (
 )
 from suite.report.table import INFINITE, Kind, Table
 from suite.report.tables.targets import medians
-from suite.report.words import counted
+from suite.report.words import counted, joined
 
 TARGET = 0.01
 """Gap to the optimum, for the ranking by time."""
@@ -216,7 +217,8 @@ def ranking_tables(steps: Steps, reference: str | None = None) -> list[Table]:
     frame = frame.sort_values(found[0].name, kind="stable").rename_axis("planner").reset_index()
     kinds = {name: Kind.P_VALUE for name in map(str, frame) if name.endswith(" p")}  # see _columns
     title = f"Mean ranks over {counted(len(found[0].ranks), 'scene')}"
-    note = " ".join([NOTE, TEST_NOTE.format(one=one), *(_verdict(r, one) for r in found)])
+    told = [NOTE, maps_note(steps.runs), TEST_NOTE.format(one=one)]
+    note = joined(*told, *(_verdict(r, one) for r in found))
     detailed = scores.assign(**{r.name: _of_rows(scores, r.ranks) for r in found})
     return [
         Table("ranking", title, frame, note, kinds=kinds),

@@ -11,7 +11,7 @@ import pandas as pd
 
 from suite.paper.reported import KBGA, find
 from suite.report.optima import check_replans
-from suite.report.rows import NAME, feasible
+from suite.report.rows import NAME, feasible, with_queries_together
 from suite.report.statistics.clock import by_the_clock, untimed_note
 from suite.report.table import Kind, Table
 from suite.report.tables.summary import spread
@@ -73,6 +73,7 @@ def simulated_tables(
     if runs.empty:
         return []
     check_replans(replans)
+    runs = with_queries_together(runs)
     fared = runs.merge(simulations, on="key", how="left", validate="one_to_one")
     asked = runs[["key", "world_settings", "contended", *NAME]].merge(replans, on="key")
     note = joined(REPLANNING_NOTE, untimed_note(runs))

@@ -10,7 +10,7 @@ from typing import Any
 import pandas as pd
 
 from suite.planner import PlanStatus
-from suite.report.rows import feasible, places
+from suite.report.rows import feasible, maps_note, places
 from suite.report.statistics.clock import untimed_note
 from suite.report.table import Kind, Table
 from suite.report.words import joined
@@ -87,7 +87,7 @@ def summary_tables(runs: pd.DataFrame, left_out: int = 0) -> list[Table]:
         Rows that were left out as outdated; the note counts them.
     """
     frame = summary(runs)
-    note = joined(f"{_counted(runs)} {WORDS} {NOTE}", untimed_note(runs))
+    note = joined(f"{_counted(runs)} {WORDS} {NOTE}", maps_note(runs), untimed_note(runs))
     if left_out:
         note += f" Left out: {left_out} rows of scenes, settings or planners that changed since."
     narrow = frame[[name for name in NARROW if name in frame]]

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from suite.report.rows import maps_note
 from suite.report.statistics.anytime import Steps, first_within
 from suite.report.statistics.clock import by_the_clock, untimed_note
 from suite.report.table import Kind, Table
@@ -115,7 +116,7 @@ def target_tables(steps: Steps) -> list[Table]:
     if frame.empty:
         return []
     title = "What it takes to come within a gap of the optimum"
-    left_out = untimed_note(steps.runs)
+    left_out = joined(maps_note(steps.runs), untimed_note(steps.runs))
     note = joined(NOTE, left_out)
     rows = Table(
         "fixed-target-rows", title, frame, note, infinite="never", detail=True, kinds=KINDS

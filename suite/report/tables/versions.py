@@ -14,7 +14,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from suite.planner import PlanStatus
-from suite.report.rows import NAME, newest
+from suite.report.rows import NAME, is_blocked, newest, with_queries_together
 from suite.report.statistics.clock import by_the_clock, dropped_note, fair, untimed_note
 from suite.report.statistics.few_runs import too_few
 from suite.report.statistics.inference import LEVEL, REPETITIONS, holm, mann_whitney
@@ -29,7 +29,8 @@ NOTE = (
     "change: of the mean over the runs that have the measure, new over old, with its 95 % interval "
     "of a bootstrap over both. p: Mann-Whitney over all runs, those without a path as the worst, "
     "corrected by Holm within each measure. better, worse: p is below 0.05. not shown: it is not; "
-    "there may be a difference or none. same: the very same values on both sides."
+    "there may be a difference or none. same: the very same values on both sides. Of a map, a "
+    "scene of many queries, a row is over the runs of all its queries."
 )
 TIME_NOTE = (
     " Times come from {where}: their verdicts do not count for the exit code, unless asked for."
@@ -136,7 +137,9 @@ _EMPTY = (
 
 
 def _groups(runs: pd.DataFrame) -> Iterator[tuple[tuple[str, ...], pd.DataFrame]]:
-    for place, group in fair(newest(runs)).groupby(NAME, sort=False, dropna=False):
+    current = newest(runs)
+    asked = with_queries_together(fair(current[~is_blocked(current)]))
+    for place, group in asked.groupby(NAME, sort=False, dropna=False):
         yield tuple(part if isinstance(part, str) else "" for part in place), group
 
 

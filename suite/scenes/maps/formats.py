@@ -6,6 +6,9 @@ from pathlib import Path
 from pkgutil import resolve_name
 from typing import cast
 
+import shapely
+from shapely.geometry import Polygon
+
 from suite.errors import SceneError
 from suite.scenes.maps.drawing import Drawing
 from suite.scenes.maps.options import OPTIONS, MapOptions
@@ -28,12 +31,48 @@ class Format:
     options: tuple[str, ...] = ()
 
 
+_IMAGE = Format(
+    "images", "suite.scenes.maps.image:read_image", ("resolution", "threshold", "simplify")
+)
+_ROS = Format("ROS map_server", "suite.scenes.maps.ros:read_ros", ("unknown", "simplify"))
+
+_GDAL = Format("what GDAL reads", "suite.scenes.maps.vector:read_vector", ("layer", "simplify"))
+
 FORMATS = {
-    ".wkt": Format("well-known text", "suite.scenes.maps.wkt:read_wkt"),
+    **dict.fromkeys((".png", ".pgm", ".bmp", ".jpg", ".jpeg", ".tif", ".tiff"), _IMAGE),
+    **dict.fromkeys((".yaml", ".yml"), _ROS),
+    ".map": Format("Moving AI's grids", "suite.scenes.maps.moving_ai:read_grid", ("simplify",)),
+    ".scen": Format("their queries", "suite.scenes.maps.moving_ai:read_queries", ("simplify",)),
+    ".mesh": Format("polygon meshes", "suite.scenes.maps.mesh:read_mesh", ("simplify",)),
+    ".svg": Format("SVG drawings", "suite.scenes.maps.svg:read_svg", ("threshold", "simplify")),
+    **dict.fromkeys((".shp", ".gpkg", ".fgb", ".gml", ".kml", ".tab", ".dxf"), _GDAL),
+    ".wkt": Format("well-known text", "suite.scenes.maps.wkt:read_wkt", ("simplify",)),
 }
 
+WITHOUT_ROLES = Format(
+    "GeoJSON without roles", "suite.scenes.maps.features:read_features", ("simplify",)
+)
+"""Of GeoJSON files, the suffix says not whether they are scenes."""
 
-def read_map(path: Path, options: MapOptions, *, inflate: float = 0.0) -> Scene:
+
+def understood() -> str:
+    """The suffixes of scene files and maps, and the format of each, in a sentence.
+
+    Examples
+    --------
+    >>> understood()[:56]
+    'Understood are .geojson, .json (scene files), .png, .pgm'
+    """
+    of: dict[str, list[str]] = {"scene files": [".geojson", ".json"]}
+    for suffix, form in FORMATS.items():
+        of.setdefault(form.name, []).append(suffix)
+    told = ", ".join(f"{', '.join(suffixes)} ({name})" for name, suffixes in of.items())
+    return f"Understood are {told}."
+
+
+def read_map(
+    path: Path, options: MapOptions, *, inflate: float = 0.0, form: Format | None = None
+) -> Scene:
     """Read a map as a scene, whose queries may be none, and may be blocked.
 
     Parameters
@@ -42,13 +81,15 @@ def read_map(path: Path, options: MapOptions, *, inflate: float = 0.0) -> Scene:
     options : MapOptions
     inflate : float
         Radius of the robot, metres; see :func:`suite.scenes.scene.make_scene`.
+    form : Format, optional
+        Default: that of the suffix, one of :data:`FORMATS`.
 
     Raises
     ------
     SceneError
         If the file can't be read. The message says what, where and how to mend it.
     """
-    form = FORMATS[path.suffix.lower()]
+    form = form or FORMATS[path.suffix.lower()]
     for option in OPTIONS:
         if getattr(options, option) is not None and option not in form.options:
             heeded = f"It heeds {', '.join(form.options)}" if form.options else "It heeds none"
@@ -58,8 +99,8 @@ def read_map(path: Path, options: MapOptions, *, inflate: float = 0.0) -> Scene:
     drawing = cast(Reader, resolve_name(form.reader))(path, options)
     return make_scene(
         path.stem,
-        drawing.workspace,
-        [Obstacle(f"obstacle {i}", polygon) for i, polygon in enumerate(drawing.obstacles, 1)],
+        _unsigned(drawing.workspace),
+        [Obstacle(f"obstacle {i}", _unsigned(p)) for i, p in enumerate(drawing.obstacles, 1)],
         drawing.queries,
         properties=drawing.properties,
         path=path,
@@ -67,3 +108,8 @@ def read_map(path: Path, options: MapOptions, *, inflate: float = 0.0) -> Scene:
         strata=drawing.strata,
         keep_blocked=True,
     )
+
+
+def _unsigned(polygon: Polygon) -> Polygon:
+    """The polygon with 0 for each -0, which is the same place, but not the same bytes of a hash."""
+    return shapely.transform(polygon, lambda xy: xy + 0.0)

@@ -18,12 +18,14 @@ class MapOptions:
     unknown : what cells are of which nothing is known.
     resolution : metres of a pixel.
     threshold : share of black, 0 to 1, from which a pixel is occupied.
+    layer : name of the one that is read, of a file of several.
     simplify : metres by which an outline may be off to have fewer vertices; an obstacle only grows.
     """
 
     unknown: Unknown | None = None
     resolution: float | None = None
     threshold: float | None = None
+    layer: str | None = None
     simplify: float | None = None
 
 

@@ -3,4 +3,11 @@
 Apart from it, so that a name is understood without any of the libraries that read maps.
 """
 
-MAP_SUFFIXES: tuple[str, ...] = (".wkt",)
+MAP_SUFFIXES: tuple[str, ...] = (
+    *(".png", ".pgm", ".bmp", ".jpg", ".jpeg", ".tif", ".tiff"),
+    *(".yaml", ".yml"),
+    *(".map", ".scen"),
+    *(".mesh", ".svg"),
+    *(".shp", ".gpkg", ".fgb", ".gml", ".kml", ".tab", ".dxf"),
+    ".wkt",
+)

@@ -1,3 +1,4 @@
+import sys
 import textwrap
 import tomllib
 
@@ -8,6 +9,7 @@ from suite.harness.matrix import Limits, load_matrix
 from suite.harness.matrix_file import FOLDER, matrix_names, outline
 from suite.planner import Budget
 from suite.plugins.discovery import available_planners
+from suite.plugins.from_file import name_plugins, named_plugins
 from suite.scenes.catalogue import scene_names
 
 GOOD = """
@@ -113,6 +115,9 @@ def test_a_list_of_seeds_is_taken_as_it_is(written):
     assert matrix.seeds == (5, 2)
 
 
+OF_A_FOLDER = ("real-maps",)
+"""Matrices whose scenes are the user's maps."""
+
 OF_MANY_SCENES = ("obstacles", "alignment")
 """Matrices that take seconds to be read."""
 
@@ -122,6 +127,7 @@ OF_MANY_SCENES = ("obstacles", "alignment")
     [
         pytest.param(name, marks=pytest.mark.slow if name in OF_MANY_SCENES else [])
         for name in matrix_names()
+        if name not in OF_A_FOLDER
     ],
 )
 def test_the_outline_of_a_matrix_counts_what_would_be_run(name):
@@ -170,7 +176,14 @@ def test_a_plugin_that_cannot_be_imported_is_no_reason_to_refuse_the_matrix(writ
         ("seeds = 3", "", "'seeds' is missing"),
         ("seeds = 3", "sedes = 3", "unknown key 'sedes'"),
         ('planner = "visibility-graph"', "", "'planner' is missing: give the name of a planner"),
-        ('"visibility-graph"', '"mine"', "or give its file with --plugin."),
+        (
+            '"visibility-graph"',
+            '"mine"',
+            "its file with --plugin, or in the `plugins` of a matrix.",
+        ),
+        ("seeds = 3", 'seeds = 3\nplugins = "a.py"', "plugins is 'a.py'. Give a list of planners'"),
+        ("seeds = 3", 'seeds = 3\nplugins = ["a.py"]', "plugins 1: a.py: there is no file /"),
+        ("seeds = 3", 'seeds = 3\nplugins = ["a"]', "plugins 1: a: neither a .py file nor a class"),
         ("seeds = 3", "seeds = 3\nseedz = 3", "Did you mean 'seeds'?"),
         ('["zigzag"]', "[]", "scenes is []"),
         ('["zigzag"]', '["zigzga"]', "Did you mean 'zigzag'?"),
@@ -231,6 +244,61 @@ def test_the_matrix_of_all_planners_leaves_none_of_ours_out():
 def test_an_unknown_matrix_is_refused_with_the_names_that_there_are():
     with pytest.raises(MatrixError, match=r"no matrix 'nonsense'.*paper-static"):
         load_matrix("nonsense")
+
+
+# Planners of its own
+
+PLANNER = """
+from suite.planner import Abilities, Plan, Planner, PlanStatus
+class Straight(Planner):
+    name = "{name}"
+    abilities = Abilities()
+    def plan(self, scene, query, budget, rng, recorder):
+        return Plan(PlanStatus.SOLVED, [query.start, query.goal])
+"""
+
+
+@pytest.fixture
+def planner_files(tmp_path):
+    """A planner's file beside the matrix, one in a folder beside it, and no planner known yet."""
+    (tmp_path / "more").mkdir()
+    (tmp_path / "straight.py").write_text(PLANNER.format(name="straight"))
+    (tmp_path / "more" / "other_one.py").write_text(PLANNER.format(name="other"))
+    name_plugins([])
+    yield tmp_path
+    name_plugins([])
+
+
+def with_plugins(*plugins, planner="straight"):
+    text = GOOD.replace('"visibility-graph"', f'"{planner}"', 1)
+    return f"plugins = {list(plugins)}\n{text}"
+
+
+@pytest.mark.parametrize("reference", ["straight.py", "straight.py:Straight", "straight:Straight"])
+def test_a_matrix_names_planners_by_their_files_beside_it(
+    written, planner_files, reference, monkeypatch
+):
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    cell = load_matrix(written(with_plugins(reference))).cells()[0]
+    assert (cell.planner, cell.distribution.removesuffix(".py")) == ("straight", "straight")
+    assert cell.version == named_plugins()[0].version
+
+
+def test_planners_of_a_matrix_and_of_the_command_add_up_each_once(written, planner_files):
+    given = planner_files / "more" / ".." / "straight.py"
+    name_plugins([str(given), str(planner_files / "more" / "other_one.py")])
+    load_matrix(written(with_plugins("straight.py", planner="other")))
+    assert sorted(p.name for p in named_plugins()) == ["other", "straight"]
+
+
+def test_changed_code_of_a_matrix_is_another_planner(written, planner_files):
+    file = written(with_plugins("straight.py"))
+    before = load_matrix(file).cells()[0]
+    code = planner_files / "straight.py"
+    code.write_text(code.read_text() + "# changed\n")
+    after = load_matrix(file).cells()[0]
+    assert before.version != after.version
+    assert before.key != after.key
 
 
 # Worlds

@@ -5,8 +5,10 @@ import pytest
 from suite.harness.cell import run_cell
 from suite.harness.rerun import compare
 from suite.harness.single import cell_for, world_for
-from suite.planner import Budget
+from suite.planner import Budget, PlanStatus
+from suite.scenes.catalogue import load_scene
 from suite.store.row_names import cell_of
+from suite.store.scenes import scene_at_hand
 from suite.store.write import open_store
 from tests.suite.harness.records import make_cell, make_record
 
@@ -55,6 +57,24 @@ def test_a_simulated_row_is_repeated_in_its_world(store):
     assert again.key == cell.key
     found = compare(file, run_cell(again))
     assert (found.same, found.must_be_same, found.distance) == (True, True, 0.0)
+
+
+@pytest.mark.parametrize("modifiers", ["", "@radius=0.3", "@turn=20,radius=0.3"])
+def test_a_row_of_two_points_on_a_map_is_repeated_when_the_map_is_gone(tmp_path, modifiers):
+    file = tmp_path / "yard.wkt"
+    file.write_text(
+        "MULTIPOLYGON (((4 0, 6 0, 6 7, 4 7, 4 0)), ((0 9.9, 10 9.9, 10 10, 0 10, 0 9.9)))"
+    )
+    cell = cell_for(f"{file}{modifiers}", "kbga", seed=1, query="2,3:8,3", budget=COUNTED)
+    with open_store(tmp_path / "s.db") as opened:
+        opened.keep_scenes({cell.scene: load_scene(cell.scene_source)}, [cell])
+        opened.begin_session({})
+        opened.add(run_cell(cell))
+    file.unlink()
+    with scene_at_hand(tmp_path / "s.db", cell_of(tmp_path / "s.db", cell.key)) as again:
+        record = run_cell(again)
+    assert record.status is PlanStatus.SOLVED, record.reason
+    assert compare(tmp_path / "s.db", record).same
 
 
 def test_a_row_that_comes_out_otherwise_says_how_far(store):

@@ -5,6 +5,7 @@ import pytest
 
 from suite.harness.matrix import load_matrix
 from suite.harness.run import Which, interleaved, run_matrix
+from suite.plugins.from_file import name_plugins
 from suite.store.read import read_paths, read_runs, read_sessions
 from suite.store.status import status
 from suite.store.write import open_store
@@ -77,6 +78,33 @@ def test_a_second_run_runs_only_what_is_missing(matrix, run):
     assert len(read_sessions(run.file)) == 2
     assert run(matrix("wanderer", seeds=3)).done == 3
     assert len(read_sessions(run.file)) == 2
+
+
+STRAIGHT = """
+from suite.planner import Abilities, Plan, Planner, PlanStatus
+class Straight(Planner):
+    name = "straight"
+    abilities = Abilities()
+    def plan(self, scene, query, budget, rng, recorder):
+        return Plan(PlanStatus.SOLVED, [query.start, query.goal])
+"""
+
+
+def test_a_matrix_brings_its_own_planners_though_processes_were_started_before(
+    matrix, run, tmp_path
+):
+    run(matrix("gives-up", seeds=1))
+    (tmp_path / "straight.py").write_text(STRAIGHT)
+    file = tmp_path / "own.toml"
+    text = (tmp_path / "matrix.toml").read_text()
+    file.write_text('plugins = ["straight.py"]\n' + text.replace('"gives-up"', '"straight"'))
+    try:
+        run(load_matrix(file))
+    finally:
+        name_plugins([])
+    row = read_runs(run.file).set_index("variant").loc["straight"]
+    assert row["status"] == "invalid"  # through the wall
+    assert (row["distribution"], row["version"][:7]) == ("straight.py", "sha256-")
 
 
 def test_one_more_planner_leaves_other_rows_unchanged(matrix, run, tmp_path):

@@ -17,7 +17,7 @@ OPTIMUM = 100.0
 
 def run(variant: str, settings: dict[str, Any], cost: float | None, **changes: Any) -> RunRecord:
     """A run that ended with a path of this cost, or with none if it is None."""
-    named = ("scene", "seed", "planner", "budget")
+    named = ("scene", "scene_hash", "query", "seed", "planner", "budget")
     of_cell = {name: changes.pop(name) for name in named if name in changes}
     cell = make_cell(variant=variant, settings=settings, **of_cell)
     if cost is None:

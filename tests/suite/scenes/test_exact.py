@@ -9,14 +9,17 @@ import shapely
 from extremitypathfinder import PolygonEnvironment
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from shapely.affinity import affine_transform
 from shapely.geometry import MultiPolygon, Point, Polygon, box
 from shapely.geometry.polygon import orient
 
 from suite.geometry.arrangement import arrange
 from suite.geometry.kernels import first_collision
-from suite.scenes.exact import ExactPath, path_length, shortest_path
+from suite.referee.path import Referee
+from suite.scenes.exact import ExactPath, path_length, prepare, shortest_path
 from suite.scenes.scene import Query, Scene, make_scene
-from tests.suite.geometry.lattice import enters, pinches, random_solid, star
+from suite.scenes.visibility import tangent_path
+from tests.suite.geometry.lattice import counts, enters, pinches, random_solid, star
 
 ROOM = box(0, 0, 10, 10)
 
@@ -109,6 +112,73 @@ def test_exact_is_brute_force_where_obstacles_touch_overlap_and_enclose(seed):
     )
 
 
+def assert_agrees_with_visibility_search_and_referee(scene: Scene, query: Query) -> None:
+    found, (path, _) = check(scene, query), tangent_path(scene, query)
+    if path is None:
+        assert found.path is None
+        return
+    assert found.length == pytest.approx(path_length(path), rel=1e-12)
+    verdict = Referee(scene).judge(query, found.path)
+    assert verdict.valid, verdict.reason
+    assert verdict.length == pytest.approx(found.length, rel=1e-12)
+
+
+@settings(max_examples=counts(60, 5))
+@given(st.integers(0, 2**32))
+def test_exact_is_the_visibility_search_where_obstacles_touch_overlap_and_enclose(seed):
+    rng = np.random.default_rng(seed)
+    room, obstacles = random_solid(rng)
+    ends = lattice_points(rng, room, arrange(room, obstacles).solid)
+    scene = make_scene("random", room, obstacles, {"main": ends})
+    assert_agrees_with_visibility_search_and_referee(scene, scene.query())
+
+
+ROOMS = [
+    pytest.param(1e-4, (0.0, 0.0), id="a millimetre"),
+    pytest.param(1.0, (5e6, 5e6), id="ten metres, far away"),
+    pytest.param(1e5, (3e8, -2e8), id="1,000 km"),
+]
+
+
+@pytest.mark.parametrize(("scale", "shift"), ROOMS)
+def test_exact_is_the_visibility_search_in_rooms_of_any_size_place_and_turn(scale, shift):
+    with_path = 0
+    for seed in range(counts(12, 2)):
+        rng = np.random.default_rng(seed)
+        turn = rng.uniform(0.0, 2.0 * np.pi)
+        a, b = scale * np.cos(turn), scale * np.sin(turn)
+        drawn = [star(rng, rng.uniform(0, 10, 2), rng.uniform(0.5, 2.5)) for _ in range(9)]
+        drawn = [p for o in drawn for p in shapely.get_parts(o.intersection(ROOM)) if p.area > 0]
+        solid = shapely.union_all(drawn)
+        points = rng.uniform(0, 10, (100, 2))
+        ends = points[shapely.distance(solid, shapely.points(points)) > 0.01][:2]
+        room, *drawn, ends = (
+            affine_transform(shape, (a, -b, b, a, *shift))
+            for shape in (ROOM, *drawn, shapely.MultiPoint(ends))
+        )
+        scene = make_scene("random", room, drawn, tuple(shapely.get_coordinates(ends)))
+        assert_agrees_with_visibility_search_and_referee(scene, scene.query())
+        with_path += shortest_path(scene, scene.query()).path is not None
+    assert with_path > 0
+
+
+def test_without_a_mesh_the_visibility_search_stands_in():
+    scene = make_scene("one box", ROOM, [box(4, 0, 6, 7)], ((0, 3), (10, 3)))
+    wanted = shortest_path(scene, scene.query())
+    vars(scene)["mesh"] = None  # as where free space can't be cut into triangles
+    found = shortest_path(scene, scene.query())
+    assert found.path.tolist() == wanted.path.tolist()
+    assert found.length == wanted.length
+
+
+def test_preparing_is_done_once_for_a_scene():
+    scene = make_scene("one box", ROOM, [box(4, 0, 6, 7)], ((0, 3), (10, 3)))
+    mesh = prepare(scene)
+    shortest_path(scene, scene.query())
+    assert mesh is not None
+    assert prepare(scene) is mesh
+
+
 def test_exact_is_extremitypathfinder_among_disjoint_polygons():
     compared = 0
     for seed in range(12):
@@ -139,7 +209,6 @@ def test_exact_is_extremitypathfinder_among_disjoint_polygons():
 def test_without_obstacles_the_path_is_the_straight_line():
     found = solve([], (1, 2), (9, 7))
     assert found.path.tolist() == [[1, 2], [9, 7]]
-    assert found.checks == 1
 
 
 def test_a_path_bends_around_the_nearer_corners():
@@ -205,6 +274,19 @@ def test_a_start_in_a_pinch_point_may_leave_into_each_of_its_sectors():
     assert solve(wall, (5, 5), (1, 5)).length == 4.0
     assert solve(wall, (5, 5), (9, 5)).length == 4.0
     assert solve(wall, (1, 5), (9, 5)).path is None
+
+
+def test_an_end_in_solid_has_no_path():
+    scene = make_scene("one box", ROOM, [box(4, 4, 6, 6)], ((1, 1), (9, 9)))
+    free, closed = np.array([1.0, 1.0]), np.array([5.0, 5.0])
+    for ends in ((free, closed), (closed, free), (closed, closed)):
+        assert shortest_path(scene, Query("into", *ends)).path is None
+
+
+def test_a_goal_deep_in_a_pocket_is_found_and_so_is_the_way_out():
+    walls = [box(2, 2, 8, 3), box(2, 3, 3, 8), box(7, 3, 8, 8)]
+    found = solve(walls, (6, 0), (5, 4))  # and back: see check()
+    assert found.path.tolist() == [[6, 0], [8, 2], [8, 8], [7, 8], [5, 4]]
 
 
 # The four mistakes that gave wrong optima on the real maps

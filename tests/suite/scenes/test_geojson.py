@@ -9,6 +9,7 @@ import shapely
 from shapely.geometry import Polygon, box, mapping, shape
 
 from suite.errors import SceneError
+from suite.scenes.catalogue import load_scene
 from suite.scenes.geojson import read_scene, write_scene
 from suite.scenes.scene import Obstacle, SceneWarning, make_scene
 
@@ -423,3 +424,83 @@ def test_a_name_may_be_any_line_of_text_or_a_number(read, name, tmp_path):
     scene = read({**GOOD, "name": name})
     assert scene.name == str(name)
     assert same_after_a_round_trip(scene, tmp_path / "out.geojson")
+
+
+def round_trip(scene, folder):
+    file = folder / "again.geojson"
+    write_scene(scene, file)
+    again = read_scene(file)
+    assert (again.name, again.hash, again.radius) == (scene.name, scene.hash, scene.radius)
+    assert dict(again.properties) == dict(scene.properties)
+    for query, other in zip(scene.queries, again.queries, strict=True):
+        assert (query.name, query.stratum) == (other.name, other.stratum)
+        assert (query.blocked is None) == (other.blocked is None)
+        assert (query.start.tolist(), query.goal.tolist()) == (
+            other.start.tolist(),
+            other.goal.tolist(),
+        )
+    return json.loads(file.read_text())
+
+
+def test_a_file_may_state_the_robots_radius_by_which_it_grows_when_it_is_read(read):
+    stated = {**GOOD, "properties": {"radius": 0.5, "optimum": {"main": 12.0}}}
+    scene = read(stated)
+    assert scene.radius == 0.5
+    assert scene.hash == read(GOOD, inflate=0.5).hash != read(GOOD).hash
+    assert dict(scene.properties) == {}
+    assert read(stated, inflate=0.0).hash == read(GOOD).hash
+    assert read(stated, inflate=0.7).hash == read(GOOD, inflate=0.7).hash
+
+
+def test_the_radius_in_a_name_goes_before_the_one_that_the_file_states(tmp_path):
+    plain, stated = tmp_path / "plain.geojson", tmp_path / "hall.geojson"
+    plain.write_text(json.dumps(GOOD))
+    stated.write_text(json.dumps({**GOOD, "properties": {"radius": 0.5}}))
+    for modifiers, same in [
+        ("", "@radius=0.5"),
+        ("@radius=0.2", "@radius=0.2"),
+        ("@radius=0", ""),
+        ("@shift=3", "@shift=3,radius=0.5"),
+        ("@scale=2", "@scale=2,radius=0.5"),
+        ("@scale=2,radius=0", "@scale=2"),
+    ]:
+        assert load_scene(f"{stated}{modifiers}").hash == load_scene(f"{plain}{same}").hash
+
+
+@pytest.mark.parametrize("key", ["radius", "grown_by"])
+@pytest.mark.parametrize("bad", [-1, "0.2", None, True, [1], 1e300])
+def test_a_radius_that_is_none_is_refused(read, key, bad):
+    document = {**GOOD, "properties": {key: bad}}
+    if bad is None:
+        assert read(document).radius == 0.0
+        return
+    with pytest.raises(
+        SceneError, match=rf"its property '{key}' is .*Give a radius of 0 m or more"
+    ):
+        read(document)
+
+
+def test_a_grown_scene_is_written_as_it_is_and_not_grown_again(read, tmp_path):
+    scene = read({**GOOD, "properties": {"radius": 0.5, "description": "a hall"}})
+    written = round_trip(scene, tmp_path)
+    assert written["properties"] == {"description": "a hall", "grown_by": 0.5}
+    grown_more = read_scene(tmp_path / "again.geojson", inflate=0.25)
+    assert grown_more.radius == 0.75
+    assert grown_more.obstacles[0].polygon.covers(scene.obstacles[0].polygon)
+
+
+def test_blocked_queries_survive_writing_and_reading(tmp_path):
+    ends = {"near": ((3.8, 5), (9, 9)), "in": ((5, 5), (9, 9)), "free": ((1, 1), (9, 9))}
+    wall, room = box(4, 4, 6, 6), box(0, 0, 10, 10)
+    strata = {"near": "short", "free": "7"}
+    kept = make_scene("hall", room, [wall], ends, strata=strata, keep_blocked=True)
+    assert [q.blocked is None for q in kept.queries] == [True, False, True]
+    round_trip(kept, tmp_path)
+    grown = make_scene("hall", room, [wall], ends, strata=strata, inflate=0.5)
+    assert [q.blocked is None for q in grown.queries] == [False, False, True]
+    round_trip(grown, tmp_path)
+
+
+def test_an_end_in_an_obstacle_of_a_file_drawn_by_hand_is_still_refused(read):
+    with pytest.raises(SceneError, match=r"start of query 'main': \(5, 5\) lies inside pillar"):
+        read(with_coordinates(3, [5, 5]))

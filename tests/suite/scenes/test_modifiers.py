@@ -50,7 +50,7 @@ def test_twins_are_turned_all_round_and_shifted_by_up_to_a_metre():
         (
             "trun=17",
             "no modifier 'trun'. It takes turn, shift, scale, twin, at, radius, snap, unknown, "
-            "resolution, threshold, simplify. Did you mean 'turn'?",
+            "resolution, threshold, layer, simplify. Did you mean 'turn'?",
         ),
         ("radius=-1", "radius is '-1'. Write radius=0.2, in metres, of 0 or more."),
         ("at=-1", "at is '-1'. Write at=2.5, in seconds, of 0 or more."),

@@ -33,17 +33,23 @@ def user(tmp_path, monkeypatch):
     name_plugins([])
 
 
+def loaded(*sources):
+    return {source: load_scene(source) for source in sources}
+
+
 def test_scenes_of_the_catalogue_stay_at_home():
-    luggage = pack(["zigzag", "zigzag@twin=3", "scattered_50-7"], [])
+    luggage = pack(loaded("zigzag", "zigzag@twin=3", "scattered_50-7"), [])
     assert not luggage
     assert unpack(luggage).source("zigzag@twin=3") == "zigzag@twin=3"
 
 
-def test_a_scene_file_arrives_with_its_modifiers(user):
-    source = f"{user / 'block.geojson'}@turn=17"
-    unpacked = unpack(pack([source], []))
+def test_a_scene_arrives_as_it_was_read_turned_and_grown_once(user):
+    source = f"{user / 'block.geojson'}@turn=17,radius=0.1"
+    scene = load_scene(source)
+    unpacked = unpack(pack({source: scene}, []))
     (user / "block.geojson").unlink()
-    assert load_scene(unpacked.source(source)).name == "block@turn=17"
+    arrived = load_scene(unpacked.source(source))
+    assert (arrived.name, arrived.hash) == ("block@turn=17,radius=0.1", scene.hash)
     assert unpacked.warmth(Warmth(queries=((source, "main"),))).queries == (
         (unpacked.source(source), "main"),
     )
@@ -51,16 +57,19 @@ def test_a_scene_file_arrives_with_its_modifiers(user):
 
 def test_a_changed_file_lies_in_another_folder_and_an_equal_one_in_the_same(user):
     file = user / "block.geojson"
-    first = unpack(pack([str(file)], [])).source(str(file))
-    again = unpack(pack([str(file)], [])).source(str(file))
-    file.write_text(file.read_text() + "\n")
-    changed = unpack(pack([str(file)], [])).source(str(file))
+
+    def place():
+        return unpack(pack(loaded(str(file)), [])).source(str(file))
+
+    first, again = place(), place()
+    file.write_text(file.read_text().replace("2.0]", "2.5]"))
+    changed = place()
     assert first == again != changed
 
 
 def test_a_planner_arrives_with_the_modules_that_it_imports(user):
     (plugin,) = name_plugins([str(user / "lucky.py")])
-    unpacked = unpack(pack([], [plugin]))
+    unpacked = unpack(pack({}, [plugin]))
     for file in user.glob("*.py"):
         file.unlink()
     hand_on(unpacked.plugins)
@@ -76,7 +85,7 @@ def test_the_data_that_a_planner_names_arrive_with_it(user):
     assert named != code
     (user / "lucky.py").write_text(named)
     (plugin,) = name_plugins([str(user / "lucky.py")])
-    (there,) = unpack(pack([], [plugin])).plugins
+    (there,) = unpack(pack({}, [plugin])).plugins
     assert (Path(there.folder) / "tables" / "one.txt").read_text() == "1"
     hand_on([there])
     assert load_planner("lucky").name == "lucky"
@@ -94,7 +103,7 @@ def test_a_planner_of_a_package_arrives(user, monkeypatch):
     (package / "lucky.py").write_text(text)
     monkeypatch.chdir(user)
     (plugin,) = name_plugins(["mine.deep.lucky:Lucky"])
-    (packed,) = pack([], [plugin]).plugins
+    (packed,) = pack({}, [plugin]).plugins
     assert [name for name, _ in packed.parcel.files] == [
         "mine/__init__.py",
         "mine/deep/__init__.py",
@@ -107,24 +116,24 @@ def test_a_planner_of_a_package_arrives(user, monkeypatch):
 
 
 def test_a_file_that_is_gone_is_said_before_anything_runs(user):
-    source = str(user / "block.geojson")
-    (user / "block.geojson").unlink()
-    with pytest.raises(HarnessError, match=r"block\.geojson: can't be read, to be sent"):
-        pack([source], [])
+    (plugin,) = name_plugins([str(user / "lucky.py")])
+    (user / "lucky.py").unlink()
+    with pytest.raises(HarnessError, match=r"lucky\.py: can't be read, to be sent"):
+        pack({}, [plugin])
 
 
 def test_a_machine_without_room_says_where_it_lacks(user, tmp_path, monkeypatch):
     (tmp_path / "file").touch()
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     with pytest.raises(HarnessError, match=r"can't be kept in .*set XDG_CACHE_HOME"):
-        unpack(pack([str(user / "block.geojson")], []))
+        unpack(pack(loaded(str(user / "block.geojson")), []))
 
 
 @pytest.mark.slow
 def test_a_worker_asks_for_luggage_once(user):
     source = str(user / "block.geojson")
     cell = cell_for(source, "visibility-graph", seed=0)
-    luggage = pack([source], [])
+    luggage = pack(loaded(source), [])
     session = new_session(luggage)
     (user / "block.geojson").unlink()
     assert run_for(session, cell, Limits(), Warmth()) is Answer.SEND_LUGGAGE
@@ -137,7 +146,7 @@ def test_a_worker_asks_for_luggage_once(user):
 def test_a_worker_does_not_mix_the_planners_of_two_matrices(hostile, user, wall_file):
     first, cell = new_session(), cell_for(str(wall_file), "hangs-in-c", seed=0)
     (plugin,) = name_plugins([str(user / "lucky.py")])
-    luggage = pack([], [plugin])
+    luggage = pack({}, [plugin])
     second, own = new_session(luggage), replace(cell, planner="lucky")
     hand_on([])
     with ThreadPoolExecutor(1) as pool:

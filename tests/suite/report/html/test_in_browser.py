@@ -10,6 +10,7 @@ from playwright.sync_api import expect, sync_playwright
 
 from suite.harness.snapshots import chosen_generations
 from suite.report.html.page import write_report
+from tests.perf.many_queries import write_many
 from tests.suite.report.html.stores import ran, some_store, write_store
 
 CHROMIUM = Path("/usr/bin/chromium")
@@ -64,6 +65,9 @@ class Seen:
         self.page.on("console", lambda message: self.complaints.append(message.text))
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.goto(file.as_uri())
+        if context.get("java_script_enabled", True):
+            # Charts are drawn when plotly is unpacked.
+            self.page.wait_for_function("document.documentElement.dataset.drawn === 'yes'")
         if stands:
             # In a while, so that all that a page does when it is opened is done.
             self.page.clock.pause_at(datetime.now() + timedelta(hours=1))
@@ -302,3 +306,65 @@ def test_an_empty_store_makes_no_complaint(browser, tmp_path):
     assert empty.page.get_by_text("holds no runs yet").is_visible()
     assert empty.complaints == []
     empty.context.close()
+
+
+@pytest.fixture(scope="module")
+def town(browser, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("town")
+    write_report(write_many(folder, 60, 3), folder / "town.html")
+    page = Seen(browser, folder / "town.html")
+    yield page
+    assert page.complaints == []
+    assert len(page.requests) == 1
+    page.context.close()
+
+
+@pytest.fixture
+def map_panel(town):
+    town.page.evaluate(AS_OPENED)
+    town.page.locator("[data-map] [data-all=yes]").click()
+    return town.page.locator("[data-map]")
+
+
+def shown(panel, what):
+    found = "found => found.filter(e => e.getClientRects().length).map(e => e.dataset.%s)"
+    return set(panel.locator(f"[data-{what}]").evaluate_all(found % what))
+
+
+def test_a_query_that_is_chosen_is_alone_on_its_map(town, map_panel):
+    everything = {str(number) for number in range(1, 9)}
+    assert shown(map_panel, "query") == everything
+    map_panel.get_by_label("Queries of the picture").select_option("3")
+    assert shown(map_panel, "query") == {"3"}
+    numbers = "document.getElementById('map-0-plot').layout.annotations.map(a => a.text)"
+    assert "<b>3</b>" in town.page.evaluate(numbers)
+
+
+def test_planners_of_a_map_are_chosen_for_the_picture_and_the_marks_alike(town, map_panel):
+    map_panel.get_by_role("checkbox", name="planner-1").click()
+    assert "planner-1" not in shown(map_panel, "planner")
+    assert town.traces("map-0") == ["planner-0", "planner-2"]
+    map_panel.get_by_role("button", name="none").click()
+    assert shown(map_panel, "planner") == set()
+    assert town.traces("map-0") == []
+
+
+PLACE_OF = """number => {
+  const plot = document.getElementById("map-0-plot");
+  const { xaxis, yaxis } = plot._fullLayout;
+  const { x, y, meta } = plot.data[0];
+  const i = meta.indexOf(number);
+  const box = plot.getBoundingClientRect();
+  return [box.x + xaxis._offset + xaxis.d2p(x[i]), box.y + yaxis._offset + yaxis.d2p(y[i])];
+}"""
+
+
+def test_a_mark_tells_its_query_and_a_click_on_a_hard_one_shows_it_on_the_map(town, map_panel):
+    map_panel.locator(".plot").scroll_into_view_if_needed()
+    x, y = town.page.evaluate(PLACE_OF, 2)
+    town.page.mouse.move(x, y, steps=3)
+    hover = map_panel.locator(".hoverlayer")
+    expect(hover).to_contain_text(re.compile(r"[\d.,-]+:[\d.,-]+.* m, (gap [\d.e-]+ %|no path)"))
+    town.page.mouse.click(x, y)
+    expect(map_panel.get_by_label("Queries of the picture")).to_have_value("2")
+    assert shown(map_panel, "query") == {"2"}

@@ -246,7 +246,7 @@ def test_a_scene_without_a_path_has_no_gap_but_a_map(tmp_path, closed_file):
     records = [ran(closed_file, "visibility-graph"), ran("zigzag", "kbga")]
     page = report_of(write_store(tmp_path / "closed.db", records))
     assert "no optimum is known" in page.text["scenes"]
-    assert ["scenes without an optimum", "1", "closed"] in [r[:3] for r in page.cells["missing"]]
+    assert ["queries without an optimum", "1", "closed"] in [r[:3] for r in page.cells["missing"]]
     assert len([f for f in page.all("svg") if f.get("role") == "img"]) == 3, "two maps, a player"
 
 
@@ -298,3 +298,15 @@ def test_simulated_runs_are_shown_as_sheets_and_tables(tmp_path):
     assert "simulations" in page.cells
     # Of a drive there is no single gap: charts would say that no run found a path.
     assert "convergence" not in page.text
+
+
+def test_reasons_that_differ_in_numbers_alone_are_one_row(tmp_path):
+    places = ["3, 4.25", "-17.5, 1e-3", "88, 0"]
+    records = [
+        failed(PlanStatus.INVALID, f"the path enters a wall at {place}.", seed=seed)
+        for seed, place in enumerate(places)
+    ]
+    page = report_of(write_store(tmp_path / "s.db", records))
+    (row,) = [row for row in page.cells["failures"] if row]
+    assert row[1:3] == ["invalid", "3"]
+    assert row[4] == "the path enters a wall at 3, 4.25."

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy import stats
 
+from suite.report.statistics import inference
 from suite.report.statistics.inference import (
     bootstrap,
     critical_difference,
@@ -284,3 +285,13 @@ def test_demsars_example_of_wilcoxons_test():
 def test_nemenyis_p_is_5_per_cent_at_the_critical_difference():
     assert nemenyi(critical_difference(4, 14), 4, 14) == pytest.approx(0.05)
     assert nemenyi(0.0, 4, 14) == 1.0
+
+
+def test_of_many_differences_the_normal_distribution_says_what_all_signs_would(monkeypatch):
+    rng = np.random.default_rng(1)
+    differences = rng.normal(0.15, 1.0, inference.SIGNS_AT_MOST + 20).round(1)
+    quick = signed_rank(differences)
+    monkeypatch.setattr(inference, "SIGNS_AT_MOST", len(differences))
+    assert quick == pytest.approx(signed_rank(differences), rel=0.02)
+    assert 0.001 < quick < 0.5
+    assert signed_rank(np.repeat(1.0, 5000)) < 1e-100

@@ -113,3 +113,10 @@ def test_other_tables_do_not_count_the_same_problem_twice():
     tables = {table.name: table.frame for table in all_tables(runs)}
     assert set(tables["summary"]["scene"]) == set(left)
     assert tables["alignment"]["scene"].tolist() == ["maze", "maze_aligned"]
+
+
+def test_a_radius_makes_another_problem_and_a_twin_of_it_is_the_same():
+    names = ["zigzag", "zigzag@radius=0.2", "zigzag@radius=0.2,twin=1"]
+    runs = runs_of(*[run("kbga", {}, 101.0, scene=name) for name in names])
+    assert list(without_repeats(runs)["scene"]) == names[:2]
+    assert list(alignment(runs)["scene"]) == ["zigzag@radius=0.2"]
