@@ -264,6 +264,9 @@ def _unmodified(
     keep_blocked: bool = False,
 ) -> Scene:
     """A scene as it is drawn. inflate : metres; None, as its file says; 0, not at all."""
+    if isinstance(name_or_path, str) and split_modifiers(name_or_path)[1]:
+        _refuse(options, name_or_path)
+        return _inflated(load_scene(name_or_path), inflate or 0.0)
     if _is_path(name_or_path):
         path = Path(name_or_path)
         if path.suffix == SUFFIX:
@@ -364,7 +367,9 @@ def _inflated(scene: Scene, inflate: float) -> Scene:
         scene.obstacles,
         {query.name: (query.start, query.goal) for query in scene.queries},
         properties=scene.properties,
+        path=scene.path,
         inflate=inflate,
+        strata={q.name: q.stratum for q in scene.queries if q.stratum is not None},
     )
 
 

@@ -5,7 +5,13 @@ import pytest
 import shapely
 
 from suite.errors import SceneError
-from suite.scenes.catalogue import aligned_names, dynamic_names, load_scene, scene_names
+from suite.scenes.catalogue import (
+    aligned_names,
+    dynamic_names,
+    load_scene,
+    scene_file,
+    scene_names,
+)
 from suite.scenes.dynamics import Detection, Dynamics, Motion, Removal, make_motion
 from suite.scenes.exact import shortest_path
 from suite.scenes.modifiers import parse_modifiers
@@ -137,6 +143,10 @@ def test_modifiers_of_a_modified_scene_come_after_its_own():
     scene = load_scene("zigzag@turn=90@scale=2")
     assert scene.name == "zigzag@turn=90@scale=2"
     assert length(scene) == pytest.approx(2.0 * length(load_scene("zigzag")))
+    file = f"{scene_file('zigzag')}@turn=90"
+    assert load_scene(f"{file}@scale=2").hash == scene.hash
+    grown, again = load_scene("zigzag@turn=90,radius=0.5"), load_scene("zigzag@turn=90@radius=0.5")
+    assert (grown.hash, grown.radius) == (again.hash, again.radius)
 
 
 def test_the_robots_radius_is_not_scaled():

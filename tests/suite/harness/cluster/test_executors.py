@@ -2,6 +2,7 @@ import multiprocessing
 import os
 import sys
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
 from types import SimpleNamespace
 
 import dask
@@ -196,8 +197,7 @@ def test_what_a_worker_lacks_is_a_row_that_says_so(hostile, wall_file, tmp_path)
     here = cell_for(str(wall_file), "wanderer", seed=0)
 
     def row(**changes):
-        values = {name: getattr(here, name) for name in here.__slots__} | changes
-        record = run_for(session, make_cell(**values), Limits(), Warmth())
+        record = run_for(session, replace(here, **changes), Limits(), Warmth())
         assert record.status is PlanStatus.ERROR
         assert record.host
         return record.reason
