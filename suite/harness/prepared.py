@@ -57,7 +57,7 @@ def prepared_scene(source: str) -> Scene:
 
 
 def scene_cpu_s(source: str) -> float:
-    """CPU seconds that it took to load, arrange and mesh a scene, once for all runs that are given it."""
+    """CPU seconds that loading, arranging and meshing a scene took, once for all runs of it."""
     return _scene(source).cpu_s
 
 
