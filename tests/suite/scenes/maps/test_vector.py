@@ -119,10 +119,22 @@ def test_a_reference_system_is_planar_metres_or_refused(crs, planar):
 def test_a_file_that_is_none_says_so(tmp_path, name):
     file = tmp_path / name
     file.write_bytes(b"nothing of the kind")
-    with pytest.raises(SceneError, match=rf"^{name}: (GDAL can't read it|holds no)"):
+    with pytest.raises(
+        SceneError, match=rf"^{name}: (GDAL can't read it|holds no|no DXF, or cut off)"
+    ):
         load_scene(file)
     with pytest.raises(SceneError, match=r"gone\.shp: can't be read \(there is no such file\)"):
         load_scene(tmp_path / "gone.shp")
+
+
+def test_a_dxf_that_is_cut_off_is_refused_for_which_gdal_would_wait_forever(tmp_path):
+    file = tmp_path / "plan.dxf"
+    lines = "0 SECTION 2 ENTITIES 0 LWPOLYLINE 8 walls 90 4 70 1 10 0 20 0 10 3 20 0".split()
+    file.write_text("\n".join(lines))
+    with pytest.raises(
+        SceneError, match=r"^plan\.dxf: no DXF, or cut off: its last line is not EOF"
+    ):
+        load_scene(file)
 
 
 def test_without_gdal_the_error_says_what_to_install(tmp_path, monkeypatch):
