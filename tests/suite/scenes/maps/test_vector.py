@@ -129,8 +129,9 @@ def test_a_file_that_is_none_says_so(tmp_path, name):
 
 def test_a_dxf_that_is_cut_off_is_refused_for_which_gdal_would_wait_forever(tmp_path):
     file = tmp_path / "plan.dxf"
-    lines = "0 SECTION 2 ENTITIES 0 LWPOLYLINE 8 walls 90 4 70 1 10 0 20 0 10 3 20 0".split()
-    file.write_text("\n".join(lines))
+    file.write_text(
+        "0\nSECTION\n2\nENTITIES\n0\nLWPOLYLINE\n8\nwalls\n90\n4\n70\n1\n10\n0\n20\n0\n10\n3\n20\n0"
+    )
     with pytest.raises(
         SceneError, match=r"^plan\.dxf: no DXF, or cut off: its last line is not EOF"
     ):
