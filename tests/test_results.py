@@ -71,6 +71,7 @@ def test_the_tables_of_a_campaign_come_out_of_its_rows(folder):
     check_tables(folder, folder)
 
 
+@pytest.mark.slow
 def test_the_tables_of_the_paper_come_out_of_the_rows_of_its_campaigns():
     check_tables(RESULTS / "paper", *(RESULTS / name for name in PAPER))
 

@@ -95,6 +95,7 @@ def test_it_is_listed(environment):
     assert {"kbga", "visibility-graph"} < {row["name"] for row in rows}
 
 
+@pytest.mark.slow
 def test_it_keeps_the_contract(monkeypatch):
     monkeypatch.setenv(VARIABLE, "[]")  # and taken back afterwards
     monkeypatch.setattr(sys, "path", list(sys.path))

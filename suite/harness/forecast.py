@@ -8,7 +8,7 @@ from statistics import median
 import pandas as pd
 
 from suite.harness.matrix import Matrix
-from suite.harness.run import Which, to_run
+from suite.harness.run import Which, can_be_asked, to_run
 from suite.processes.cores import honest_jobs
 from suite.store.read import read_runs
 from suite.store.record import Cell
@@ -106,7 +106,8 @@ def forecast_matrix(
     cells = matrix.cells(quick=quick)
     runs = read_runs(store) if store.exists() else NOTHING
     there = dict(zip(runs["key"], runs["status"], strict=True))
-    return forecast(len(cells), to_run(cells, there, which), runs, jobs or honest_jobs())
+    missing = can_be_asked(matrix, to_run(cells, there, which))
+    return forecast(len(cells), missing, runs, jobs or honest_jobs())
 
 
 def forecast(wanted: int, cells: Sequence[Cell], runs: pd.DataFrame, jobs: int) -> Forecast:

@@ -76,7 +76,7 @@ def _written(warmth: Warmth) -> dict[str, str]:
 
 def _read() -> dict[str, Any] | None:
     """What the variables say, which are taken away; None if there are none."""
-    pieces = []
+    pieces: list[str] = []
     while (piece := os.environ.pop(f"{VARIABLE}_{len(pieces)}", None)) is not None:
         pieces.append(piece)
     told: dict[str, Any] | None = json.loads("".join(pieces)) if pieces else None

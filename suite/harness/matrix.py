@@ -117,6 +117,16 @@ class Matrix:
     limits: Limits
     worlds: tuple[tuple[tuple[str, Mapping[str, Any]], ...], ...]
 
+    @property
+    def blocked(self) -> dict[tuple[str, str], str]:
+        """By source and name, why queries can't be asked whose ends are not free."""
+        return {
+            (source, query.name): query.blocked
+            for source, queries in zip(self.sources, self.queries, strict=True)
+            for query in queries
+            if query.blocked is not None
+        }
+
     def cells(self, *, quick: bool = False) -> list[Cell]:
         """All runs: scene by scene, query by query, world by world, variant by variant.
 
@@ -142,7 +152,6 @@ class Matrix:
                 scene_source=source,
                 scene_hash=fingerprint,
                 query=query.name,
-                blocked=query.blocked,
                 variant=variant.name,
                 planner=variant.plugin.name,
                 distribution=variant.plugin.distribution,

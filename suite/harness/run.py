@@ -199,10 +199,10 @@ def run_matrix(
         store.add(record, replace=record.cell.key in there)
         progress.count(record)
 
-    if any(cell.blocked is not None for cell in missing):
+    asked = can_be_asked(matrix, missing)
+    if len(asked) < len(missing):
         _refuse(matrix, missing, store, keep)
         on_progress(progress)
-    asked = [cell for cell in missing if cell.blocked is None]
     if asked:
         patience = Patience(patience_s)
         with session(matrix, asked, store, executor, jobs, patience) as own:
@@ -212,14 +212,22 @@ def run_matrix(
     return progress
 
 
+def can_be_asked(matrix: Matrix, cells: Sequence[Cell]) -> list[Cell]:
+    """The cells of a matrix whose queries have both ends in free space."""
+    blocked = matrix.blocked
+    return [cell for cell in cells if (cell.scene_source, cell.query) not in blocked]
+
+
 def _refuse(
     matrix: Matrix, cells: Sequence[Cell], store: Store, keep: Callable[[RunRecord], None]
 ) -> None:
     """Keep a row for each cell whose query can't be asked, without a process and a planner."""
-    store.begin_session(provenance(matrix.name, set()) | {"pid": os.getpid()})
+    store.begin_session(provenance(matrix.name) | {"pid": os.getpid()})
+    blocked = matrix.blocked
     for cell in cells:
-        if cell.blocked is not None:
-            keep(refused(cell, cell.blocked))
+        reason = blocked.get((cell.scene_source, cell.query))
+        if reason is not None:
+            keep(refused(cell, reason))
 
 
 @contextmanager

@@ -48,7 +48,6 @@ class Cell:
     seed : int, 0 or more.
     world : of a run that is simulated; None if the scene stands still and is planned in once.
     position : place in its matrix; tables keep that order. The outcome does not depend on it.
-    blocked : why the query can't be asked, if its matrix knows: it is refused and never run.
     """
 
     scene: str
@@ -64,7 +63,6 @@ class Cell:
     seed: int
     world: World | None = None
     position: int = 0
-    blocked: str | None = None
 
     @property
     def label(self) -> str:

@@ -1,25 +1,29 @@
 """Which queries a matrix runs, with what robot, and what becomes of those that can't be asked."""
 
 import textwrap
-import time
+from collections import Counter
 from pathlib import Path
 
 import pytest
 import shapely
 
 from suite.errors import MatrixError
+from suite.harness import matrix as matrix_module
 from suite.harness import run as harness_run
 from suite.harness.cell import run_cell
+from suite.harness.forecast import forecast_matrix
 from suite.harness.fork_server import LONGEST, Warmth, _read
 from suite.harness.matrix import load_matrix
-from suite.harness.matrix_file import outline
+from suite.harness.matrix_file import QuerySample, outline
 from suite.harness.prepared import exact_optimum
+from suite.harness.queries import chosen_queries
 from suite.harness.run import run_matrix, to_run
 from suite.harness.single import cell_for
 from suite.planner import PlanStatus
 from suite.scenes.catalogue import load_scene
 from suite.scenes.geojson import write_scene
 from suite.scenes.scene import make_scene
+from suite.store import record as record_module
 from suite.store.read import read_runs
 from suite.store.write import open_store
 
@@ -123,15 +127,12 @@ def test_what_can_not_be_asked_is_refused_with_what_to_write(matrix, text, messa
     assert message in str(caught.value)
 
 
-def test_of_the_strata_of_a_map_so_many_are_taken(tmp_path, matrix, monkeypatch):
-    from suite.harness import matrix as module
-
+def test_of_the_strata_of_a_map_so_many_are_taken():
     strata = {f"{i}-{j}": str(i) for i in range(2) for j in range(3)}
     ends = {name: ((1, 1), (9, 1 + i / 10)) for i, name in enumerate(strata)}
     bucketed = make_scene("hall", ROOM, [WALL], ends, strata=strata)
-    monkeypatch.setattr(module, "load_scene", lambda _: bucketed)  # no format of theirs is here yet
-    [names] = asked(matrix('scenes = ["hall.geojson"]\nqueries = { per_stratum = 2 }\n'))
-    assert [name[0] for name in names] == ["0", "0", "1", "1"]
+    chosen = chosen_queries(bucketed, QuerySample(per_stratum=2, seed=3))
+    assert [query.stratum for query in chosen] == ["0", "0", "1", "1"]
 
 
 def test_a_frozen_scene_needs_no_world(matrix):
@@ -159,6 +160,10 @@ def test_a_blocked_query_is_refused_for_every_planner_and_nothing_is_started_for
         own(cells, *rest)
 
     monkeypatch.setattr(harness_run, "run_each", watched)
+    told = forecast_matrix(
+        wanted, tmp_path / "s.db", jobs=1, quick=False, which=harness_run.Which.MISSING
+    )
+    assert told.as_text().startswith("2 of 6 runs would be run; 4 need not be.")
     with open_store(tmp_path / "s.db") as store:
         end = run_matrix(wanted, store, jobs=1)
         again = run_matrix(wanted, store, jobs=1)
@@ -190,15 +195,27 @@ def test_a_blocked_query_is_refused_wherever_it_is_run(hostile):
 # Thousands
 
 
-def test_thousands_of_queries_become_cells_and_their_keys_in_little_time(matrix):
+def test_of_thousands_of_queries_each_is_hashed_once_and_each_cell(matrix, monkeypatch):
     planners = "".join(f'[[planner]]\nname = "p{i}"\nplanner = "kbga"\n' for i in range(8))
     wanted = matrix('scenes = ["maze"]\nqueries = { random = 2000 }\n', planners)
-    began = time.process_time()
+    calls = Counter()
+
+    def counted(module, name):
+        own = getattr(module, name)
+
+        def count(*arguments):
+            calls[name] += 1
+            return own(*arguments)
+
+        monkeypatch.setattr(module, name, count)
+
+    counted(matrix_module, "scene_fingerprint")
+    counted(record_module, "short_hash")
     cells = wanted.cells()
     missing = to_run(cells, {}, harness_run.Which.MISSING)
-    spent = time.process_time() - began
-    assert len({cell.key for cell in missing}) == 16_000
-    assert spent < 6.0  # CPU seconds; 1 to 2 of them are wanted
+    harness_run.Progress.at_first(cells, missing, {})
+    assert len({cell.key for cell in cells}) == 16_000
+    assert calls == {"scene_fingerprint": 2000, "short_hash": 16_000}
 
 
 def test_a_fork_server_hears_of_thousands_of_queries_in_variables_that_a_system_takes(monkeypatch):

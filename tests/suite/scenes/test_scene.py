@@ -282,7 +282,9 @@ def test_a_goal_that_cannot_be_reached_is_no_error():
 def test_inflating_grows_obstacles_and_shrinks_the_workspace():
     scene = scene_of(box(4, 4, 6, 6), inflate=0.5)
     assert scene.bounds == (0.5, 0.5, 9.5, 9.5)
-    assert scene.obstacles[0].polygon.bounds == (3.5, 3.5, 6.5, 6.5)
+    grown = scene.obstacles[0].polygon
+    assert grown.intersection(box(4.1, 0, 5.9, 10)).bounds == (4.1, 3.5, 5.9, 6.5)
+    assert grown.bounds == pytest.approx((3.5, 3.5, 6.5, 6.5), abs=3e-9)  # beside its corners
     grown = scene_of(box(4, 4, 6, 6), inflate=0.5, queries={"a": ((3.7, 5), (9, 9))})
     assert "(3.7, 5) lies inside obstacle 1, grown by the robot's radius of 0.5 m" in (
         grown.query("a").blocked or ""

@@ -5,7 +5,13 @@ import pytest
 import shapely
 
 from suite.errors import SceneError
-from suite.scenes.catalogue import aligned_names, dynamic_names, load_scene, scene_names
+from suite.scenes.catalogue import (
+    aligned_names,
+    dynamic_names,
+    load_scene,
+    scene_file,
+    scene_names,
+)
 from suite.scenes.dynamics import Detection, Dynamics, Motion, Removal, make_motion
 from suite.scenes.exact import shortest_path
 from suite.scenes.modifiers import parse_modifiers
@@ -15,6 +21,8 @@ from suite.scenes.similarity import modified
 EVERY = [*scene_names(), *dynamic_names(), *aligned_names(), "scattered_30-7"]
 every_scene = pytest.mark.parametrize("name", EVERY)
 TWINS = range(20)
+SHARE = 3
+"""One in so many of the scenes has its twins looked at in an ordinary run."""
 
 
 def length(scene: Scene) -> float:
@@ -25,7 +33,13 @@ def moved(scene: Scene, text: str, inflate: float = 0.0) -> Scene:
     return modified(scene, parse_modifiers(text, scene.name), inflate=inflate)
 
 
-@every_scene
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow if number % SHARE else [])
+        for number, name in enumerate(EVERY)
+    ],
+)
 def test_a_twin_has_the_optimum_of_its_scene(name):
     optimum = length(load_scene(name))
     with warnings.catch_warnings():
@@ -129,6 +143,10 @@ def test_modifiers_of_a_modified_scene_come_after_its_own():
     scene = load_scene("zigzag@turn=90@scale=2")
     assert scene.name == "zigzag@turn=90@scale=2"
     assert length(scene) == pytest.approx(2.0 * length(load_scene("zigzag")))
+    file = f"{scene_file('zigzag')}@turn=90"
+    assert load_scene(f"{file}@scale=2").hash == scene.hash
+    grown, again = load_scene("zigzag@turn=90,radius=0.5"), load_scene("zigzag@turn=90@radius=0.5")
+    assert (grown.hash, grown.radius) == (again.hash, again.radius)
 
 
 def test_the_robots_radius_is_not_scaled():

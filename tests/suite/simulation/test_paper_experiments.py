@@ -11,7 +11,7 @@ from suite.planner import Budget
 from suite.simulation.run import Simulation
 
 SEEDS = range(20)
-SAMPLE = 3
+SAMPLE = 1
 every_seed = pytest.mark.parametrize(
     "seed", [pytest.param(s, marks=[] if s < SAMPLE else pytest.mark.slow) for s in SEEDS]
 )

@@ -111,7 +111,9 @@ def test_looks_differ_without_colour():
     assert simulation.TRAIL["linestyle"] != simulation.PATH["linestyle"]
 
 
-@pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
+@pytest.mark.parametrize(
+    "suffix", [".png", *(pytest.param(s, marks=pytest.mark.slow) for s in (".pdf", ".svg"))]
+)
 def test_a_sheet_is_a_small_file_and_the_same_bytes_each_time(run, tmp_path, suffix):
     for name in ("a", "b"):
         save(plot_snapshots(run), tmp_path / f"{name}{suffix}")
