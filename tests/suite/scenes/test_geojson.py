@@ -487,6 +487,13 @@ def test_a_grown_scene_is_written_as_it_is_and_not_grown_again(read, tmp_path):
     assert grown_more.obstacles[0].polygon.covers(scene.obstacles[0].polygon)
 
 
+def test_what_has_grown_keeps_its_radius_when_it_is_modified(read, tmp_path):
+    write_scene(read(GOOD, inflate=0.5), tmp_path / "grown.geojson")
+    for modifiers, radius in [("@turn=90", 0.5), ("@scale=2", 1.0), ("@radius=0.25", 0.75)]:
+        assert load_scene(f"{tmp_path / 'grown.geojson'}{modifiers}").radius == radius
+        assert load_scene(f"{tmp_path / 'grown.geojson'}@shift=1{modifiers}").radius == radius
+
+
 def test_blocked_queries_survive_writing_and_reading(tmp_path):
     ends = {"near": ((3.8, 5), (9, 9)), "in": ((5, 5), (9, 9)), "free": ((1, 1), (9, 9))}
     wall, room = box(4, 4, 6, 6), box(0, 0, 10, 10)
