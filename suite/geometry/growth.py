@@ -53,8 +53,8 @@ def grown(polygon: Polygon, radius: float, grid: float) -> Polygon:
     Examples
     --------
     >>> from shapely import box
-    >>> grown(box(0, 0, 1, 1), 0.5, 1e-9).bounds
-    (-0.5, -0.5, 1.5, 1.5)
+    >>> grown(box(0, 0, 1, 1), 0.5, 1e-9).intersection(box(0.1, -9, 0.9, 9)).bounds
+    (0.1, -0.5, 0.9, 1.5)
     """
     cover = shapely.union_all([polygon, *_band(polygon, radius, grid)], grid_size=grid)
     outline = next(p.exterior for p in shapely.get_parts(cover) if isinstance(p, Polygon))

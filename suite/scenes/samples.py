@@ -109,7 +109,7 @@ def _check_room(scene: Scene, min_distance: float) -> None:
         raise SceneError(f"{scene.name}: no place is free, to draw queries from.")
     xmin, ymin, xmax, ymax = regions.bounds
     across = math.hypot(xmax - xmin, ymax - ymin)
-    if min_distance >= across:
+    if not min_distance < across:  # so written, NaN is refused too
         raise SceneError(
             f"{scene.name}: min_distance is {min_distance:g} m, and free space is {across:.6g} m "
             "across. Give less."

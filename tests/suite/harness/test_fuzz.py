@@ -50,9 +50,25 @@ def folder(tmp_path_factory):
     return made
 
 
+OF_QUERIES = """
+scenes = [
+  "maze",
+  { scene = "zigzag", queries = ["main", "6,38:94,36"], radius = 0.25, snap = true },
+  { scene = "door@at=3", queries = { random = 3, seed = 2, connected = false } },
+]
+queries = { random = 5, seed = 1, min_distance = 20.0, connected = true }
+radius = 0.5
+seeds = 2
+
+[[planner]]
+planner = "visibility-graph"
+"""
+
+
 def mutation(seed: int) -> bytes:
     """A matrix that went wrong: every second one is a document, the others are bytes."""
-    text = _lighter(matrix_file(random.Random(seed).choice(matrix_names())).read_text())
+    name = random.Random(seed).choice([*matrix_names(), OF_QUERIES])
+    text = name if name == OF_QUERIES else _lighter(matrix_file(name).read_text())
     if seed % 2:
         return mutated_bytes(text, seed)
     return as_toml(mutated_document(tomllib.loads(text), seed)).encode()
@@ -86,8 +102,10 @@ def test_a_matrix_that_went_wrong_is_an_error_or_a_right_matrix(first, folder):
 def check_right(found: matrix_module.Matrix) -> None:
     """Its cells are as many as its parts say, each another one, and each can be named."""
     of_scenes = [
-        len(scene.queries) * max(len(worlds), 1) * len(seeds) * len(found.variants)
-        for scene, worlds, seeds in zip(found.scenes, found.worlds, found.scene_seeds, strict=True)
+        len(queries) * max(len(worlds), 1) * len(seeds) * len(found.variants)
+        for queries, worlds, seeds in zip(
+            found.queries, found.worlds, found.scene_seeds, strict=True
+        )
     ]
     if sum(of_scenes) <= CELLS:
         cells = found.cells()
