@@ -252,6 +252,8 @@ def _modified(base: str, modifiers: Modifiers, inflate: float | None) -> Scene:
 
 
 def _stated_radius(name_or_path: str) -> float:
+    if split_modifiers(name_or_path)[1]:
+        return 0.0  # by which it has grown already
     suffix = Path(name_or_path).suffix.lower()
     is_scene_file = suffix not in (SUFFIX, *FORMATS) and _is_path(name_or_path)
     return stated_radius(Path(name_or_path)) if is_scene_file else 0.0
@@ -282,8 +284,6 @@ def _unmodified(
         return read_scene(path, inflate=inflate, keep_blocked=keep_blocked)
     name = str(name_or_path)
     _refuse(options, name)
-    if split_modifiers(name)[1]:
-        return load_scene(name, inflate=inflate or None)
     if _is_generated(name):
         return _inflated(_generated(name), inflate or 0.0)
     return read_scene(scene_file(name), inflate=inflate)
@@ -370,6 +370,7 @@ def _inflated(scene: Scene, inflate: float) -> Scene:
         path=scene.path,
         inflate=inflate,
         strata={q.name: q.stratum for q in scene.queries if q.stratum is not None},
+        grown_by=scene.radius,
     )
 
 
