@@ -135,7 +135,7 @@ def _search(sx: float, sy: float, gx: float, gy: float, mesh: Mesh) -> tuple[np.
     queue = np.empty((4 * most, 5))
     queue[0, LEAST], queue[0, ENTRY], queue[0, ROOT] = 0.0, NOWHERE - start, start
     checks = 0
-    size = np.int64(1)  # a literal number has a type of its own: all would be compiled twice
+    size = int(np.int64(1))  # a literal has a type of its own: all would be compiled twice
     while size > 0:
         if size + most > queue.shape[0]:
             queue = _larger(queue, size)
