@@ -54,7 +54,7 @@ bench: setup
 # Compiled once, by two processes with a part each: two workers of pytest would both compile all.
 kernels: setup-dev
 	@$(BIN)/python -m tests.kernels kbga & \
-		$(BIN)/python -m tests.kernels visibility-graph ompl-rrtstar grid-astar cmaes; wait
+		$(BIN)/python -m tests.kernels exact visibility-graph ompl-rrtstar grid-astar cmaes; wait
 
 # What runs in a test; TESTS=FILE for some.
 TESTS ?=
