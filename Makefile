@@ -77,8 +77,10 @@ test-loaded: setup-dev browser kernels
 	done; \
 	$(ORDINARY) $(TESTS)
 
+# Hours; ONE_IN=40 runs one in forty of them, others at each commit.
+ONE_IN ?= 1
 test-slow: setup-dev
-	$(BIN)/python -m pytest -q -m slow -n 2 --dist worksteal
+	$(BIN)/python -m pytest -q -m slow --one-in $(ONE_IN) -n 2 --dist worksteal
 
 # The harness is killed at 100 random moments of a matrix, and resumed.
 torture: setup-dev

@@ -47,6 +47,7 @@ def test_without_ompl_a_run_of_its_planner_says_so(command):
     assert OMPL in said.stderr
 
 
+@pytest.mark.slow
 def test_without_pyarrow_rows_are_exported_as_csv_and_parquet_says_how(command, small_store):
     assert command("pyarrow", "export", small_store, "rows", "--to", "csv").stdout
     for arguments in (("export", small_store, "rows"), ("results", small_store, "folder")):

@@ -59,11 +59,19 @@ def check_tables(folder: Path, *sources: Path) -> None:
     assert [name for name, text in there.items() if made.get(name) != text] == []
 
 
-@pytest.mark.parametrize("folder", CAMPAIGNS, ids=lambda folder: folder.name)
+@pytest.mark.parametrize(
+    "folder",
+    [
+        pytest.param(folder, marks=[] if folder.name in PAPER else pytest.mark.slow)
+        for folder in CAMPAIGNS
+    ],
+    ids=lambda folder: folder.name,
+)
 def test_the_tables_of_a_campaign_come_out_of_its_rows(folder):
     check_tables(folder, folder)
 
 
+@pytest.mark.slow
 def test_the_tables_of_the_paper_come_out_of_the_rows_of_its_campaigns():
     check_tables(RESULTS / "paper", *(RESULTS / name for name in PAPER))
 

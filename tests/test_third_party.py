@@ -95,6 +95,7 @@ def test_it_is_listed(environment):
     assert {"kbga", "visibility-graph"} < {row["name"] for row in rows}
 
 
+@pytest.mark.slow
 def test_it_keeps_the_contract(monkeypatch):
     monkeypatch.setenv(VARIABLE, "[]")  # and taken back afterwards
     monkeypatch.setattr(sys, "path", list(sys.path))
@@ -108,6 +109,7 @@ def test_it_keeps_the_contract_where_it_is_installed(environment):
     assert "small-prm: keeps the contract" in done(environment / "kbga-bench", "check", "small-prm")
 
 
+@pytest.mark.slow
 def test_a_matrix_runs_it_and_the_tables_hold_it(environment, tmp_path):
     (tmp_path / "matrix.toml").write_text(MATRIX)
     command = environment / "kbga-bench"

@@ -19,7 +19,7 @@ from suite.planner import Budget
 from suite.plugins.discovery import PluginInfo, planner_info
 from suite.plugins.settings import make_settings
 from suite.scenes.catalogue import has_scene, load_scene
-from suite.scenes.modifiers import MARK, SUFFIXES, expand_twins, split_modifiers
+from suite.scenes.modifiers import MARK, PATHS, expand_twins, split_modifiers
 from suite.scenes.scene import Scene, scene_fingerprint
 from suite.simulation.settings import world_settings
 from suite.store.record import Cell, World
@@ -223,7 +223,7 @@ def _scene_source(entry: str, folder: Path) -> str:
         return str((folder / entry).resolve())
     base, modifiers = split_modifiers(entry)
     path = folder / base
-    is_path = path.exists() or path.suffix.lower() in SUFFIXES or len(Path(base).parts) > 1
+    is_path = path.exists() or path.suffix.lower() in PATHS or len(Path(base).parts) > 1
     # A word that is neither goes to the catalogue, which says what it has.
     if not is_path:
         return entry

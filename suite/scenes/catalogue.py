@@ -13,11 +13,14 @@ drew the walls. Scenes that were once drawn on whole metres stay as they were, a
 
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from suite.errors import SceneError, did_you_mean
 from suite.scenes.geojson import read_scene
-from suite.scenes.modifiers import SUFFIXES, parse_modifiers, split_modifiers
+from suite.scenes.maps.formats import FORMATS, read_map
+from suite.scenes.maps.options import OPTIONS, MapOptions
+from suite.scenes.modifiers import MARK, PATHS, parse_modifiers, split_modifiers
 from suite.scenes.moving import moving, moving_name, parse_moving_name
 from suite.scenes.scattered import parse_scattered_name, scattered, scattered_name
 from suite.scenes.scene import Query, Scene, make_scene, scene_fingerprint
@@ -189,13 +192,32 @@ def load_scene(name_or_path: str | Path, *, inflate: float = 0.0) -> Scene:
         base, text = split_modifiers(name_or_path)
         if text:
             modifiers = parse_modifiers(text, name_or_path)
-            return modified(load_scene(base), modifiers, inflate=inflate)
+            radius = inflate or modifiers.radius
+            if modifiers.moves:
+                return modified(_unmodified(base, modifiers.options), modifiers, inflate=radius)
+            scene = _unmodified(base, modifiers.options, radius)
+            return replace(scene, name=f"{scene.name}{MARK}{modifiers.text}")
+    return _unmodified(name_or_path, MapOptions(), inflate)
+
+
+def _unmodified(name_or_path: str | Path, options: MapOptions, inflate: float = 0.0) -> Scene:
     if _is_path(name_or_path):
-        return read_scene(Path(name_or_path), inflate=inflate)
+        path = Path(name_or_path)
+        if path.suffix.lower() in FORMATS:
+            return read_map(path, options, inflate=inflate)
+        _refuse(options, path.name)
+        return read_scene(path, inflate=inflate)
     name = str(name_or_path)
+    _refuse(options, name)
     if _is_generated(name):
         return _inflated(_generated(name), inflate)
     return read_scene(scene_file(name), inflate=inflate)
+
+
+def _refuse(options: MapOptions, where: str) -> None:
+    for option in OPTIONS:
+        if getattr(options, option) is not None:
+            raise SceneError(f"{where}: is no map, of which {option} could be said. Leave it out.")
 
 
 def scene_as_it_was(
@@ -234,7 +256,7 @@ def _is_path(name_or_path: str | Path) -> bool:
         return True
     separators = (os.sep, os.altsep) if os.altsep else (os.sep,)
     has_separator = any(s in name_or_path for s in separators)
-    return has_separator or Path(name_or_path).suffix.lower() in SUFFIXES
+    return has_separator or Path(name_or_path).suffix.lower() in PATHS
 
 
 def _is_generated(name: str) -> bool:

@@ -1,4 +1,4 @@
-"""Scene modifiers: a scene that is turned, shifted or scaled, by the way its name is spelled.
+"""Scene modifiers: a scene that is moved, grown or read otherwise, by the way its name is spelled.
 
 ``zigzag@turn=17,shift=0.37`` is zigzag turned by 17 degrees and moved 0.37 m to the right. Behind
 the ``@`` stand, in any order and each at most once:
@@ -14,6 +14,13 @@ the ``@`` stand, in any order and each at most once:
     for each scene. A planner that finds good paths only where walls lie well for it is found out
     by twins.
 
+``radius=R``
+    Of the robot, metres: the obstacles grow by it, after all else, and the workspace shrinks.
+
+And of maps alone, how they are read, see :class:`suite.scenes.maps.options.MapOptions`:
+``unknown=free`` or ``unknown=occupied``, ``resolution=METRES`` of a pixel, ``threshold=SHARE`` and
+``simplify=METRES``.
+
 Workspace, obstacles, starts and goals move as one: the problem stays the same, and so does its
 optimum, but for the scale. Only what a planner lays over the plane itself, a lattice say, meets
 the obstacles elsewhere; as it may be laid from the workspace on, it is turning that counts.
@@ -22,19 +29,24 @@ the obstacles elsewhere; as it may be laid from the workspace on, it is turning 
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 from zlib import crc32
 
 import numpy as np
 
 from suite.errors import SceneError, did_you_mean
 from suite.geometry.tolerances import LARGEST
+from suite.scenes.maps.options import OPTIONS, MapOptions, Unknown
+from suite.scenes.maps.suffixes import MAP_SUFFIXES
 
 SUFFIXES = (".geojson", ".json")
-"""Of scene files, by which a name is told from a path."""
+"""Of scene files."""
+PATHS = (*SUFFIXES, *MAP_SUFFIXES)
+"""Suffixes by which a name is told from a path."""
 MARK = "@"
-KEYS = ("turn", "shift", "scale", "twin")
+KEYS = ("turn", "shift", "scale", "twin", "radius", *OPTIONS)
 FURTHEST = 1.0
 """Metres by which a twin is shifted along each axis, at the most."""
 
@@ -49,12 +61,21 @@ class Modifiers:
     turn : degrees, counter-clockwise.
     shift : (dx, dy), metres.
     scale : factor on lengths, above 0.
+    radius : of the robot, metres.
+    options : how the map is read.
     """
 
     text: str
     turn: float = 0.0
     shift: tuple[float, float] = (0.0, 0.0)
     scale: float = 1.0
+    radius: float = 0.0
+    options: MapOptions = field(default_factory=MapOptions)
+
+    @property
+    def moves(self) -> bool:
+        """Whether anything comes to lie elsewhere."""
+        return (self.turn, self.shift, self.scale) != (0.0, (0.0, 0.0), 1.0)
 
 
 def split_modifiers(name: str) -> tuple[str, str]:
@@ -70,7 +91,7 @@ def split_modifiers(name: str) -> tuple[str, str]:
     (('rooms@home/a.json', 'twin=3'), ('rooms@home/a.json', ''))
     """
     base, mark, text = name.rpartition(MARK)
-    is_path = len(Path(text).parts) > 1 or Path(text).suffix.lower() in SUFFIXES
+    is_path = len(Path(text).parts) > 1 or Path(text).suffix.lower() in PATHS
     if not mark or is_path or Path(name).exists():
         return name, ""
     if not text or not base:
@@ -103,17 +124,25 @@ def parse_modifiers(text: str, where: str) -> Modifiers:
 
     Examples
     --------
-    >>> parse_modifiers("shift=0.37,turn=17", "zigzag")
-    Modifiers(text='shift=0.37,turn=17', turn=17.0, shift=(0.37, 0.0), scale=1.0)
+    >>> found = parse_modifiers("shift=0.37,turn=17", "zigzag")
+    >>> found.text, found.turn, found.shift, found.scale, found.radius
+    ('shift=0.37,turn=17', 17.0, (0.37, 0.0), 1.0, 0.0)
     """
     pairs = _pairs(text, where)
     turn = _number(pairs["turn"], "turn", where) if "turn" in pairs else 0.0
     shift = _shift(pairs["shift"], where) if "shift" in pairs else (0.0, 0.0)
-    scale = _scale(pairs["scale"], where) if "scale" in pairs else 1.0
+    scale = _above_zero(pairs["scale"], "scale", where) if "scale" in pairs else 1.0
     if "twin" in pairs:
         angle, dx, dy = _drawn(_seed(pairs["twin"], where))
         turn, shift = turn + angle, (shift[0] + dx, shift[1] + dy)
-    return Modifiers(",".join(f"{k}={v}" for k, v in pairs.items()), turn, shift, scale)
+    return Modifiers(
+        ",".join(f"{k}={v}" for k, v in pairs.items()),
+        turn,
+        shift,
+        scale,
+        _not_negative(pairs["radius"], "radius", where) if "radius" in pairs else 0.0,
+        _options({key: value for key, value in pairs.items() if key in OPTIONS}, where),
+    )
 
 
 def _pairs(text: str, where: str) -> Mapping[str, str]:
@@ -136,6 +165,11 @@ _EXAMPLES = {
     "shift": "shift=0.37 or shift=0.37:-0.21, in metres",
     "scale": "scale=1.0137, above 0",
     "twin": "twin=3, a whole number of 0 or more",
+    "radius": "radius=0.2, in metres, of 0 or more",
+    "unknown": "unknown=occupied or unknown=free",
+    "resolution": "resolution=0.05, metres of a pixel, above 0",
+    "threshold": "threshold=0.65, the share of black from which a pixel is occupied, above 0",
+    "simplify": "simplify=0.1, metres, above 0",
 }
 
 
@@ -157,11 +191,30 @@ def _shift(value: str, where: str) -> tuple[float, float]:
     return dx, dy
 
 
-def _scale(value: str, where: str) -> float:
-    scale = _number(value, "scale", where)
-    if scale <= 0.0:
-        raise SceneError(f"{where}: scale is '{value}'. Write {_EXAMPLES['scale']}.")
-    return scale
+def _not_negative(value: str, key: str, where: str) -> float:
+    number = _number(value, key, where)
+    if number < 0.0:
+        raise SceneError(f"{where}: {key} is '{value}'. Write {_EXAMPLES[key]}.")
+    return number
+
+
+def _above_zero(value: str, key: str, where: str) -> float:
+    number = _number(value, key, where)
+    if number <= 0.0:
+        raise SceneError(f"{where}: {key} is '{value}'. Write {_EXAMPLES[key]}.")
+    return number
+
+
+def _options(given: Mapping[str, str], where: str) -> MapOptions:
+    read: dict[str, Any] = {k: _above_zero(v, k, where) for k, v in given.items() if k != "unknown"}
+    if "unknown" in given:
+        try:
+            read["unknown"] = Unknown(given["unknown"])
+        except ValueError:
+            raise SceneError(
+                f"{where}: unknown is '{given['unknown']}'. Write {_EXAMPLES['unknown']}."
+            ) from None
+    return MapOptions(**read)
 
 
 def _seed(value: str, where: str) -> int:

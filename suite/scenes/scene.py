@@ -6,6 +6,7 @@ already in the obstacles (paper section II-A), or are added by ``inflate``.
 
 import hashlib
 import json
+import re
 import warnings
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -39,6 +40,13 @@ COARSEST = 1e-6
 are compared to this."""
 
 
+MOST_NAMES = 12
+"""Queries that are named in an error: a map may have thousands."""
+
+_NUMBER = r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?)"
+_TWO_POINTS = re.compile(rf"{_NUMBER},{_NUMBER}:{_NUMBER},{_NUMBER}")
+
+
 class SceneWarning(UserWarning):
     """A scene was mended on loading, in a way that its author may want to know."""
 
@@ -49,11 +57,16 @@ class Query:
 
     name : str, unique in its scene.
     start, goal : (2,) float64, metres, read-only.
+    blocked : why it can't be asked: an end that is not in free space; None if both are. No planner
+        is run on it.
+    stratum : the part of a set of queries that it belongs to, of a similar difficulty; or None.
     """
 
     name: str
     start: NDArray[np.float64]
     goal: NDArray[np.float64]
+    blocked: str | None = None
+    stratum: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,9 +97,10 @@ class Scene:
     workspace : Polygon without holes, metres.
     obstacles : tuple of Obstacle, inside the workspace, but for those that move, whose drawing may
         stick out; they may touch and overlap.
-    queries : tuple of Query, at least one.
+    queries : tuple of Query; none in a map that says nothing of where to go.
     properties : read-only mapping, what the scene file says about itself.
     path : the file that the scene came from, or None.
+    radius : of the robot that the obstacles were grown by, metres.
     """
 
     name: str
@@ -95,10 +109,12 @@ class Scene:
     queries: tuple[Query, ...]
     properties: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     path: Path | None = None
+    radius: float = 0.0
 
     def __getstate__(self) -> dict[str, Any]:
-        """All but what is computed: its arrays would come back writable, another type to numba."""
-        state = {k: v for k, v in self.__dict__.items() if k not in ("arrangement", "mesh")}
+        """All but what is made of it: arrays would come back writable, another type to numba."""
+        made = ("arrangement", "at_first", "mesh")
+        state = {k: v for k, v in self.__dict__.items() if k not in made}
         return state | {"properties": dict(self.properties)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -125,6 +141,11 @@ class Scene:
     def closed_by(self, obstacle: Obstacle) -> list[Polygon]:
         """What an obstacle closes of the workspace; one that moves is cut at the border."""
         return _inside(self.workspace, obstacle.polygon, obstacle.moves, self.coordinates)
+
+    @cached_property
+    def at_first(self) -> "Scene":
+        """The static scene that it is at time 0: itself, if it is static."""
+        return scene_at(self, 0.0) if self.is_dynamic else self
 
     @property
     def arrays(self) -> ObstacleArrays:
@@ -162,18 +183,36 @@ class Scene:
     def query(self, name: str | None = None) -> Query:
         """The query of that name, or the first one.
 
+        Parameters
+        ----------
+        name : str, optional
+            Of one of its queries, or any two points as ``x,y:x,y`` (start, goal, metres).
+
         Raises
         ------
         SceneError
-            If there is no query of that name.
+            If there is none.
+
+        Examples
+        --------
+        >>> make_scene("hall", shapely.box(0, 0, 9, 9), [], {}).query("1,1:8,2.5").goal.tolist()
+        [8.0, 2.5]
         """
-        if name is None:
-            return self.queries[0]
-        for query in self.queries:
-            if query.name == name:
+        for query in self.queries if name is not None else self.queries[:1]:
+            if query.name == name or name is None:
                 return query
-        names = ", ".join(q.name for q in self.queries)
-        raise SceneError(f"{self.name}: no query '{name}'. It has: {names}.")
+        found = None if name is None else _TWO_POINTS.fullmatch(name)
+        if name is not None and found is not None:
+            x, y, to_x, to_y = (float(number) for number in found.groups())
+            query = _as_query(self.name, name, ((x, y), (to_x, to_y)), self.coordinates)
+            return _asked(self.name, self, query)
+        names = ", ".join(q.name for q in self.queries[:MOST_NAMES])
+        more = len(self.queries) - MOST_NAMES
+        raise SceneError(
+            f"{self.name}: no query{f' {name!r}' if name else ''}. "
+            + (f"It has: {names}{f' and {more} more' if more > 0 else ''}. " if names else "")
+            + "Any two points are one: x,y:x,y for start and goal, in metres."
+        )
 
     def stored_optimum(self, query: Query) -> float | None:
         """The exact optimum that the scene file states for a query, metres; None if it has none."""
@@ -195,6 +234,8 @@ def make_scene(
     properties: Mapping[str, Any] | None = None,
     path: Path | None = None,
     inflate: float = 0.0,
+    strata: Mapping[str, str] | None = None,
+    keep_blocked: bool = False,
 ) -> Scene:
     """Check and normalise the pieces of a scene, and put them together.
 
@@ -208,13 +249,17 @@ def make_scene(
         What sticks out of the workspace is cut off, with a :class:`SceneWarning`. Vertices are
         listed in order, either way round; the last is joined to the first.
     queries : mapping from name to (start, goal), or one such pair
-        Points (2,), metres. A pair alone is the query ``main``.
+        Points (2,), metres. A pair alone is the query ``main``; none are none.
     properties : mapping, optional
         Kept with the scene as they are, but for the optima, which hold for a robot of no size.
     path : Path, optional
         The file that the pieces came from; named in errors.
     inflate : float
-        Radius of the robot, metres: obstacles grow by it and the workspace shrinks by it.
+        Radius of the robot, metres: obstacles grow by it and the workspace shrinks by it. Queries
+        whose ends are not free then are kept, and blocked.
+    strata : mapping from name of a query to name of its stratum, optional
+    keep_blocked : bool
+        Keep queries whose ends are not free at time 0, blocked, whatever the radius.
 
     Returns
     -------
@@ -261,24 +306,26 @@ def make_scene(
     room, named = _normalise(where, room, named, inflate)
     coordinates = coordinates_of(room.bounds)
     ends = queries if isinstance(queries, Mapping) else {DEFAULT_QUERY: queries}
-    if not ends:
-        raise SceneError(
-            f"{where}: no start. Add a feature of role 'start' and one of role 'goal'."
-        )
+    strata = strata or {}
     scene = Scene(
         name=name,
         workspace=room,
         obstacles=tuple(named),
-        queries=tuple(_as_query(where, key, pair, coordinates) for key, pair in ends.items()),
+        queries=tuple(
+            replace(_as_query(where, key, pair, coordinates), stratum=strata.get(key))
+            for key, pair in ends.items()
+        ),
         properties=MappingProxyType(_still_true(properties or {}, inflate)),
         path=path,
+        radius=inflate,
     )
     _check_closed(where, scene)
-    # What comes upon an end later is what dynamic scenes are for: a hit, or a goal to wait for.
-    first = scene_at(scene, 0.0) if scene.is_dynamic else scene
-    for query in scene.queries:
-        _check_free(where, first, f"start of query '{query.name}'", query.start)
-        _check_free(where, first, f"goal of query '{query.name}'", query.goal)
+    asked = tuple(_asked(where, scene, query) for query in scene.queries)
+    for query in asked:
+        if query.blocked is not None and not (keep_blocked or inflate > 0.0):
+            raise SceneError(query.blocked)
+    # Not a copy: the arrangement, which is kept with the scene, took its time.
+    object.__setattr__(scene, "queries", asked)
     return scene
 
 
@@ -410,20 +457,39 @@ def _check_closed(where: str, scene: Scene) -> None:
         )
 
 
-def _check_free(where: str, scene: Scene, what: str, point: NDArray[np.float64]) -> None:
+def _asked(where: str, scene: Scene, query: Query) -> Query:
+    """A query with what blocks it at time 0, if anything does.
+
+    What comes upon an end later is what dynamic scenes are for: a hit, or a goal to wait for.
+    """
+    now = scene.at_first
+    ends = (("start", query.start), ("goal", query.goal))
+    found = (_not_free(now, point) for _, point in ends)
+    whys = [
+        f"{where}, {role} of query '{query.name}': {printed(*point)} {why}"
+        for (role, point), why in zip(ends, found, strict=True)
+        if why is not None
+    ]
+    return replace(query, blocked=whys[0] if whys else None)
+
+
+def _not_free(scene: Scene, point: NDArray[np.float64]) -> str | None:
+    """Why a point is not in the free space of a static scene; None if it is."""
     place, grid = shapely.Point(point), scene.coordinates.grid
-    if scene.workspace.distance(place) > grid:
-        raise SceneError(
-            f"{where}, {what}: {printed(*point)} lies outside the workspace, "
-            f"{printed(*scene.bounds[:2])} to {printed(*scene.bounds[2:])}. Move it inside."
+    grown_by = f", grown by the robot's radius of {scene.radius:g} m" if scene.radius else ""
+    # Asked of thousands of queries: prepared, which is kept with the geometry.
+    shapely.prepare([scene.workspace, scene.arrangement.solid])
+    if not shapely.dwithin(scene.workspace, place, grid):
+        smaller = f", made smaller by the robot's radius of {scene.radius:g} m"
+        return (
+            f"lies outside the workspace, {printed(*scene.bounds[:2])} to "
+            f"{printed(*scene.bounds[2:])}{smaller if scene.radius else ''}. Move it inside."
         )
     if scene.arrangement.solid.contains(place):
         names = [o.name for o in scene.obstacles if o.polygon.distance(place) <= grid]
         names = names or ["the border of the workspace"]
-        raise SceneError(
-            f"{where}, {what}: {printed(*point)} lies inside {' and '.join(names)}. "
-            "Move it to free space."
-        )
+        return f"lies inside {' and '.join(names)}{grown_by}. Move it to free space."
+    return None
 
 
 def scene_at(scene: Scene, time: float, without: Collection[str] = ()) -> Scene:

@@ -116,6 +116,8 @@ def modified(scene: Scene, modifiers: Modifiers, *, inflate: float = 0.0) -> Sce
         properties=_moved_properties(scene, modifiers, move),
         path=scene.path,
         inflate=inflate,
+        strata={q.name: q.stratum for q in scene.queries if q.stratum is not None},
+        keep_blocked=any(query.blocked is not None for query in scene.queries),
     )
 
 

@@ -57,7 +57,13 @@ def grid_optimum(scene: Scene, side: float, count: int) -> float:
     return float(dijkstra(csr_array(weights * lengths), indices=start)[goal])
 
 
-@pytest.mark.parametrize("name", ["unstructured", "obstacles_20", "obstacles_40"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "obstacles_20",
+        *(pytest.param(n, marks=pytest.mark.slow) for n in ("unstructured", "obstacles_40")),
+    ],
+)
 def test_the_raw_path_is_the_shortest_of_the_grid(name):
     scene = load_scene(name)
     made = plan(scene, resolution=25, smooth=False)

@@ -38,6 +38,7 @@ def test_a_goal_that_is_missed_says_so_and_fewer_rows_get_less_time():
     assert found["memory of its parent, most"] == "yes"
 
 
+@pytest.mark.slow
 def test_a_small_measurement_measures_everything(tmp_path):
     found = measure(runs=3, rows=4, jobs=2)
     text = write(found, tmp_path)

@@ -183,6 +183,7 @@ def test_a_simulation_that_cannot_be_run_says_why(error_of, option, value, messa
     assert message in error_of(*SIMULATE, option, value)
 
 
+@pytest.mark.slow
 def test_a_simulation_is_drawn_in_snapshots_and_moving(kbga_bench, tmp_path):
     sheet, moving = tmp_path / "door.png", tmp_path / "door.gif"
     drawn = (*SIMULATE, "--time-limit", 0.5, "--plot", sheet, "--animate", moving)

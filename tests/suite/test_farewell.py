@@ -80,6 +80,7 @@ def test_json_is_all_there_is_on_standard_output_whatever_a_planner_prints(
         assert f"{printed} at import" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_row_again_is_json_and_nothing_else(loud, wall_file, tmp_path):
     matrix, store = tmp_path / "m.toml", tmp_path / "s.db"
     text = f'scenes = ["{wall_file}"]\nseeds = 1\n[[planner]]\nplanner = "loud"\n'

@@ -15,7 +15,7 @@ from suite.store.read import read_paths, read_runs
 from tests.suite.commands import COMMAND, hear_interrupts, in_own_process, marked
 
 SEEDS = 4
-SAMPLE = 3
+SAMPLE = 2
 KILLS = 100
 PATIENCE_S = 300.0
 """More than anybody needs, however busy the machine is."""
@@ -92,7 +92,7 @@ def check_resumed(matrix, store, before, paths):
     check_integrity(store)
 
 
-@pytest.mark.parametrize("endless", ["hangs", "hangs-in-c"])
+@pytest.mark.parametrize("endless", ["hangs", pytest.param("hangs-in-c", marks=pytest.mark.slow)])
 def test_kill_9_in_the_middle_keeps_what_is_done_and_leaves_no_orphan(
     matrix_file, tmp_path, endless
 ):
@@ -128,7 +128,10 @@ def test_kill_9_at_any_moment_loses_no_finished_row_and_doubles_none(
     check_resumed(wanted, store, read_runs(store).set_index("key"), read_paths(store))
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "code"),
+    [(signal.SIGINT, 130), pytest.param(signal.SIGTERM, 143, marks=pytest.mark.slow)],
+)
 def test_who_is_asked_to_end_twice_stops_tidily_and_says_how_to_go_on(
     matrix_file, tmp_path, number, code
 ):

@@ -51,7 +51,9 @@ def test_a_change_in_a_file_reaches_the_machine_code_of_its_callers_in_others(tw
     assert [run(), run()] == ["11 0", "11 1"]
 
 
-@pytest.mark.parametrize(("after_s", "told"), [(0.0, 1), (1e9, 0)])
+@pytest.mark.parametrize(
+    ("after_s", "told"), [(0.0, 1), pytest.param(1e9, 0, marks=pytest.mark.slow)]
+)
 def test_compiling_that_takes_its_time_is_told_once_and_beside_the_output(two_files, after_s, told):
     """By a process and by those that it starts; not when all is compiled."""
     code = (

@@ -271,7 +271,7 @@ def test_ten_runs_in_one_process_are_the_same(planner):
 
 
 @each
-@pytest.mark.parametrize("checks", [80, 3000])
+@pytest.mark.parametrize("checks", [80, pytest.param(3000, marks=pytest.mark.slow)])
 def test_nothing_of_a_run_stays_in_memory(planner, checks, monkeypatch):
     alive = []
     set_up = Problem.set_up

@@ -122,7 +122,9 @@ print(sum(judged))
 
 
 @pytest.mark.parametrize("size", ["300", "3e3", "1e6"])
-@pytest.mark.parametrize("name", ["obstacles_20", "scattered_100"])
+@pytest.mark.parametrize(
+    "name", ["obstacles_20", pytest.param("scattered_100", marks=pytest.mark.slow)]
+)
 def test_aorrtc_survives_twenty_queries_in_rooms_where_it_died(name, size):
     # OMPL 2.0.1 alone dies in every room of 300 m and more.
     root = Path(__file__).parents[3]

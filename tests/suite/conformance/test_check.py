@@ -91,6 +91,7 @@ def test_a_broken_rule_is_named_and_how_to_mend_it_and_the_code_is_1():
     assert "first_collision" in broken["mend"]
 
 
+@pytest.mark.slow
 def test_a_planner_that_hangs_is_killed_and_the_run_is_named(hanging):
     arguments = ("check", "hangs-at-the-end", "--plugin", hanging, "--limit-s", 10)
     done = kbga_bench(*arguments, code=1)
@@ -106,6 +107,7 @@ def test_a_planner_that_hangs_is_killed_and_the_run_is_named(hanging):
     assert left == []
 
 
+@pytest.mark.slow
 def test_a_budget_that_ends_the_process_breaks_its_rule_and_no_other(hanging):
     done = kbga_bench("check", "dies-of-few-checks", "--plugin", hanging, code=1)
     assert "BROKEN    keeps-checks\n" in done.stdout
@@ -138,6 +140,7 @@ def test_what_cannot_be_loaded_or_set_is_an_error_and_no_broken_rule(hostile):
     assert os.environ.get("KBGA_BENCH_PLUGINS") is None
 
 
+@pytest.mark.slow
 def test_several_are_checked_and_each_has_a_line_at_the_end():
     plugins = ("--plugin", f"{BROKEN}:Detours", "--plugin", f"{BROKEN}:BadName")
     done = kbga_bench("check", "detours", "Bad Name", *plugins, code=1)

@@ -79,6 +79,7 @@ def test_an_author_sees_the_broken_rule_and_how_to_mend_it(outcomes):
     assert "raise AssertionError" not in printed  # the lines of the kit say nothing to an author
 
 
+@pytest.mark.slow
 def test_an_author_sees_a_warning_and_the_test_passes(outcomes):
     printed = outcomes("ClaimsALowerCost", "claimed_cost_is_the_length", "path_is_free")
     assert "2 passed" in printed

@@ -16,15 +16,7 @@ FEWER = {"extremitypathfinder": 24}
 """Rules kept by one that refuses some scenes: then no rule about repeated runs applies."""
 
 
-SAMPLE = {
-    "kbga",
-    "kbga-plus",
-    "plain-ga",
-    "visibility-graph",
-    "grid-astar",
-    "ompl-rrtstar",
-    "ompl-prm",
-}
+SAMPLE = {"kbga", "visibility-graph", "ompl-rrtstar"}
 """One of each kind. `make test-slow` examines the others, and so does `kbga-bench check`."""
 
 

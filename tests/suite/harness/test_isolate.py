@@ -195,6 +195,7 @@ def test_runs_leave_the_environment_and_the_folder_of_the_harness_alone(run):
     assert (dict(os.environ), os.getcwd()) == before  # noqa: PTH109
 
 
+@pytest.mark.slow
 def test_many_threads_may_wait_for_many_processes(run):
     planners = ["wanderer", "exits", "segfaults", "raises"] * 5
     with ThreadPoolExecutor(8) as threads:

@@ -113,7 +113,17 @@ def test_a_list_of_seeds_is_taken_as_it_is(written):
     assert matrix.seeds == (5, 2)
 
 
-@pytest.mark.parametrize("name", matrix_names())
+OF_MANY_SCENES = ("obstacles", "alignment")
+"""Matrices that take seconds to be read."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow if name in OF_MANY_SCENES else [])
+        for name in matrix_names()
+    ],
+)
 def test_the_outline_of_a_matrix_counts_what_would_be_run(name):
     matrix = load_matrix(name)
     assert outline(name) == {

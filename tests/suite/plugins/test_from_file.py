@@ -149,6 +149,7 @@ def test_a_plugin_that_cannot_be_used_is_one_line_and_ends_the_command(file, mon
     assert "ModuleNotFoundError: No module named 'no_such_module'" in told.err
 
 
+@pytest.mark.slow
 def test_a_matrix_runs_it_in_other_processes_and_changed_code_runs_anew(file, wall_file):
     matrix, store = file.with_name("m.toml"), file.with_name("s.db")
     matrix.write_text(

@@ -47,6 +47,7 @@ def test_data_that_changed_are_another_version(file, changed):
     assert planner_version("weighs") == after.version
 
 
+@pytest.mark.slow
 def test_rows_of_other_data_are_run_anew(file, wall_file):
     matrix = file.with_name("m.toml")
     matrix.write_text(f'scenes = ["{wall_file}"]\nseeds = 1\n[[planner]]\nplanner = "weighs"\n')

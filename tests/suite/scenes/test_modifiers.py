@@ -47,7 +47,14 @@ def test_twins_are_turned_all_round_and_shifted_by_up_to_a_metre():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("trun=17", "no modifier 'trun'. It takes turn, shift, scale, twin. Did you mean 'turn'?"),
+        (
+            "trun=17",
+            "no modifier 'trun'. It takes turn, shift, scale, twin, radius, unknown, resolution, "
+            "threshold, simplify. Did you mean 'turn'?",
+        ),
+        ("radius=-1", "radius is '-1'. Write radius=0.2, in metres, of 0 or more."),
+        ("unknown=maybe", "unknown is 'maybe'. Write unknown=occupied or unknown=free."),
+        ("resolution=0", "resolution is '0'. Write resolution=0.05, metres of a pixel, above 0."),
         ("turn", "turn has no value. Write turn=17, in degrees."),
         ("turn=", "turn has no value. Write turn=17, in degrees."),
         ("turn=east", "turn is 'east'. Write turn=17, in degrees."),

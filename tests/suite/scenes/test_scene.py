@@ -193,9 +193,24 @@ def test_a_start_on_a_vertex_or_border_that_no_grid_holds_is_free():
             scene_of(obstacle, room=room, queries={str(p): (p, ends[0]) for p in ends})
 
 
-def test_no_start_is_refused():
-    with pytest.raises(SceneError, match="no start"):
-        scene_of(queries={})
+def test_a_scene_without_a_query_is_a_map_in_which_any_two_points_are_one():
+    scene = scene_of(box(4, 4, 6, 6), queries={})
+    assert scene.queries == ()
+    with pytest.raises(SceneError, match=r"no query\. Any two points are one: x,y:x,y for start"):
+        scene.query()
+    query = scene.query("1,1:9.5,-0")
+    assert (query.name, query.start.tolist(), query.goal.tolist(), query.blocked) == (
+        ("1,1:9.5,-0", [1.0, 1.0], [9.5, 0.0], None)
+    )
+    assert "goal of query '1,1:5,5': (5, 5) lies inside obstacle 1" in (
+        scene.query("1,1:5,5").blocked or ""
+    )
+
+
+def test_of_queries_that_are_not_there_a_dozen_is_named():
+    scene = scene_of(queries={f"q{i}": ((1, 1), (9, 9)) for i in range(20)})
+    with pytest.raises(SceneError, match=r"no query 'r'\. It has: q0, .*, q11 and 8 more\."):
+        scene.query("r")
 
 
 @pytest.mark.parametrize("point", ["ab", (1, 2, 3), 7, None, ("a", "b")])
@@ -268,8 +283,22 @@ def test_inflating_grows_obstacles_and_shrinks_the_workspace():
     scene = scene_of(box(4, 4, 6, 6), inflate=0.5)
     assert scene.bounds == (0.5, 0.5, 9.5, 9.5)
     assert scene.obstacles[0].polygon.bounds == (3.5, 3.5, 6.5, 6.5)
-    with pytest.raises(SceneError, match="inside obstacle 1"):
-        scene_of(box(4, 4, 6, 6), inflate=0.5, queries={"main": ((3.7, 5), (9, 9))})
+    grown = scene_of(box(4, 4, 6, 6), inflate=0.5, queries={"a": ((3.7, 5), (9, 9))})
+    assert "(3.7, 5) lies inside obstacle 1, grown by the robot's radius of 0.5 m" in (
+        grown.query("a").blocked or ""
+    )
+    outside = scene_of(inflate=0.5, queries={"a": ((1, 1), (9.7, 9))}).query("a").blocked
+    assert "(9.7, 9) lies outside the workspace, (0.5, 0.5) to (9.5, 9.5), made smaller" in (
+        outside or ""
+    )
+
+
+def test_queries_that_can_not_be_asked_are_kept_on_request_and_say_why():
+    queries = {"a": ((5, 5), (9, 9)), "b": ((1, 1), (9, 9))}
+    scene = scene_of(box(4, 4, 6, 6), queries=queries, keep_blocked=True, strata={"b": "easy"})
+    a, b = scene.queries
+    assert "start of query 'a': (5, 5) lies inside obstacle 1. Move it to free" in (a.blocked or "")
+    assert (b.blocked, a.stratum, b.stratum) == (None, None, "easy")
 
 
 def test_inflating_rounds_the_reflex_corners_of_the_workspace():

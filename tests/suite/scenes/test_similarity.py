@@ -15,6 +15,8 @@ from suite.scenes.similarity import modified
 EVERY = [*scene_names(), *dynamic_names(), *aligned_names(), "scattered_30-7"]
 every_scene = pytest.mark.parametrize("name", EVERY)
 TWINS = range(20)
+SHARE = 3
+"""One in so many of the scenes has its twins looked at in an ordinary run."""
 
 
 def length(scene: Scene) -> float:
@@ -25,7 +27,13 @@ def moved(scene: Scene, text: str, inflate: float = 0.0) -> Scene:
     return modified(scene, parse_modifiers(text, scene.name), inflate=inflate)
 
 
-@every_scene
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow if number % SHARE else [])
+        for number, name in enumerate(EVERY)
+    ],
+)
 def test_a_twin_has_the_optimum_of_its_scene(name):
     optimum = length(load_scene(name))
     with warnings.catch_warnings():
@@ -40,7 +48,14 @@ def test_a_scaled_scene_has_a_scaled_optimum(name):
     assert length(scaled) == pytest.approx(1.0137 * length(load_scene(name)), rel=1e-9)
 
 
-@pytest.mark.parametrize("name", ["maze", "zigzag", "maze_aligned", "zigzag_aligned", "door"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "zigzag",
+        "zigzag_aligned",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("maze", "maze_aligned", "door")),
+    ],
+)
 def test_what_is_joined_to_the_border_stays_joined(name):
     """Rounded vertices beside a turned border leave slits: without contacts, in 6 of 100 twins."""
     drawn = load_scene(name).arrangement

@@ -132,7 +132,7 @@ DEEPER = 1e-5
 """Metres: above a hit's depth, and far below what a lattice polygon has in it."""
 
 
-@settings(max_examples=50)
+@settings(max_examples=20)
 @given(moving(), ways())
 def test_the_first_hit_is_the_one_that_fine_samples_find(obstacle, way):
     scene = scene_of(obstacle)

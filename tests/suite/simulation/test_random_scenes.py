@@ -18,7 +18,7 @@ from suite.simulation.settings import world_settings
 from suite.simulation.trajectory import make_trajectory
 from tests.suite.simulation.samples import DEEPER, leaves_the_room, sampled_hits
 
-SAMPLE = 20
+SAMPLE = 8
 ALL = 1_000
 FEW_GENERATIONS = Budget(generations=30)
 """For a single plan: where there is no path, KBGA goes on for as long as it may."""

@@ -281,7 +281,7 @@ PLANNERS: list[type[Planner]] = [VisibilityGraphPlanner, KBGAPlanner]
 
 
 @pytest.mark.parametrize("planner", PLANNERS)
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(dynamic_scenes(), st.sampled_from([0.4, 1.0]), st.integers(0, 3))
 def test_every_run_ends_and_its_story_is_consistent(planner, scene, interval, seed):
     world = WorldSettings(2.0, interval, 1.5, 25.0, charge=Charge.ZERO)

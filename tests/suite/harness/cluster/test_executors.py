@@ -122,6 +122,7 @@ def test_a_scheduler_that_is_not_there_is_an_error_before_anything_is_written(
     assert not store.exists()
 
 
+@pytest.mark.slow
 def test_a_dry_run_counts_with_the_workers_of_the_cluster(cluster, matrix_file, tmp_path):
     for _ in range(3):
         cluster.add_worker()

@@ -120,6 +120,7 @@ def test_a_machine_without_room_says_where_it_lacks(user, tmp_path, monkeypatch)
         unpack(pack([str(user / "block.geojson")], []))
 
 
+@pytest.mark.slow
 def test_a_worker_asks_for_luggage_once(user):
     source = str(user / "block.geojson")
     cell = cell_for(source, "visibility-graph", seed=0)

@@ -50,6 +50,7 @@ def run(user, store, on_progress=lambda _: None, **options):
     return read_runs(store), read_paths(store)
 
 
+@pytest.mark.slow
 def test_files_travel_to_machines_without_a_shared_disk(user, cluster, tmp_path):
     # First, so that our own kernels are compiled, which takes minutes.
     local, local_paths = run(user, tmp_path / "local.db", jobs=1)

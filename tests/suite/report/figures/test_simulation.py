@@ -111,7 +111,9 @@ def test_looks_differ_without_colour():
     assert simulation.TRAIL["linestyle"] != simulation.PATH["linestyle"]
 
 
-@pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
+@pytest.mark.parametrize(
+    "suffix", [".png", *(pytest.param(s, marks=pytest.mark.slow) for s in (".pdf", ".svg"))]
+)
 def test_a_sheet_is_a_small_file_and_the_same_bytes_each_time(run, tmp_path, suffix):
     for name in ("a", "b"):
         save(plot_snapshots(run), tmp_path / f"{name}{suffix}")
@@ -120,6 +122,7 @@ def test_a_sheet_is_a_small_file_and_the_same_bytes_each_time(run, tmp_path, suf
     assert len(first) < 300_000
 
 
+@pytest.mark.slow
 def test_an_animation_moves_between_updates_and_stays_small(run, tmp_path, monkeypatch):
     monkeypatch.setattr(simulation, "MOST_FRAMES", 12)
     animate(run, tmp_path / "a.gif")

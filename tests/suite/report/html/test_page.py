@@ -81,6 +81,7 @@ def page(store):
     return report_of(store)
 
 
+@pytest.mark.slow
 def test_the_same_store_gives_the_same_bytes_also_in_another_process(page, store, tmp_path):
     env = {**os.environ, "PYTHONHASHSEED": "7"}
     in_own_process("report", store, "-o", tmp_path / "again.html", env=env)

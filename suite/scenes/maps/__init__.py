@@ -1,0 +1,1 @@
+"""Maps that others made, read as scenes: one file for each format."""
