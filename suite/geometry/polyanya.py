@@ -56,7 +56,7 @@ def nodes_of_shortest_path(
     _mark_goal(mesh.boxes, half_edges, mesh.outward, nodes, marks)
     # A triangle adds seven rows at most: three corners, three cones and the goal, to the start's.
     most = 8 * (mesh.most + IN_A_ROW)
-    queue = np.empty((4 * most, 5))
+    queue = np.empty((most, 5))
     queue[0, LEAST], queue[0, ENTRY], queue[0, ROOT] = 0.0, NOWHERE - start, start
     checks = 0
     size = int(np.int64(1))  # a literal has a type of its own: all would be compiled twice

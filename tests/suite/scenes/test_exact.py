@@ -1,6 +1,7 @@
 """The exact path is the shortest one: by hand, by brute force, and by another library."""
 
 import heapq
+import pickle
 from itertools import product
 
 import numpy as np
@@ -177,6 +178,13 @@ def test_preparing_is_done_once_for_a_scene():
     shortest_path(scene, scene.query())
     assert mesh is not None
     assert prepare(scene) is mesh
+
+
+def test_a_scene_that_was_sent_elsewhere_is_solved_there():
+    scene = make_scene("one box", ROOM, [box(4, 0, 6, 7)], ((0, 3), (10, 3)))
+    here = shortest_path(scene, scene.query())
+    sent = pickle.loads(pickle.dumps(scene))
+    assert shortest_path(sent, sent.query()).path.tolist() == here.path.tolist()
 
 
 def test_exact_is_extremitypathfinder_among_disjoint_polygons():
