@@ -250,6 +250,8 @@ def _modified(base: str, modifiers: Modifiers, inflate: float | None) -> Scene:
 
 
 def _stated_radius(name_or_path: str) -> float:
+    if split_modifiers(name_or_path)[1]:
+        return 0.0  # it has grown, if at all, when its own modifiers have been heeded
     is_scene_file = Path(name_or_path).suffix.lower() not in FORMATS and _is_path(name_or_path)
     return stated_radius(Path(name_or_path)) if is_scene_file else 0.0
 
@@ -263,7 +265,7 @@ def _unmodified(
     """A scene as it is drawn. inflate : metres; None, as its file says; 0, not at all."""
     if isinstance(name_or_path, str) and split_modifiers(name_or_path)[1]:
         _refuse(options, name_or_path)
-        return _inflated(load_scene(name_or_path), inflate or 0.0)
+        return load_scene(name_or_path, inflate=inflate or None)
     if _is_path(name_or_path):
         path = Path(name_or_path)
         if path.suffix.lower() in FORMATS:
@@ -278,8 +280,6 @@ def _unmodified(
         return read_scene(path, inflate=inflate, keep_blocked=keep_blocked)
     name = str(name_or_path)
     _refuse(options, name)
-    if split_modifiers(name)[1]:
-        return load_scene(name, inflate=inflate or None)
     if _is_generated(name):
         return _inflated(_generated(name), inflate or 0.0)
     return read_scene(scene_file(name), inflate=inflate)
