@@ -3,8 +3,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALLED := .venv/.installed
-# What is installed from this folder beside the base: all planners, rows as parquet, maps of a GIS.
-EXTRAS := others,parquet,gdal
+# What is installed from this folder beside the base: all planners, and rows as parquet.
+EXTRAS := others,parquet
 STORE ?= out/paper-static.db
 JOBS ?= 2
 ARGS ?=
@@ -35,7 +35,7 @@ $(INSTALLED): pyproject.toml
 
 # And what tests, linters and the reference need.
 $(INSTALLED)-dev: $(INSTALLED)
-	$(BIN)/python -m pip install --quiet --group dev -e ".[$(EXTRAS),dask]"
+	$(BIN)/python -m pip install --quiet --group dev -e ".[$(EXTRAS),dask,gdal]"
 	touch $@
 
 # The report is tested in Debian's chromium. Where it is missing and can't be installed, the tests
@@ -54,7 +54,7 @@ bench: setup
 # Compiled once, by two processes with a part each: two workers of pytest would both compile all.
 kernels: setup-dev
 	@$(BIN)/python -m tests.kernels kbga & \
-		$(BIN)/python -m tests.kernels visibility-graph ompl-rrtstar grid-astar cmaes; wait
+		$(BIN)/python -m tests.kernels exact visibility-graph ompl-rrtstar grid-astar cmaes; wait
 
 # What runs in a test; TESTS=FILE for some.
 TESTS ?=

@@ -36,7 +36,6 @@ allocating_kernel = njit(cache=True)
 SOURCES = (
     "suite/jit.py",
     "suite/geometry/*.py",
-    "suite/scenes/exact.py",
     "suite/scenes/homotopy.py",
     "suite/scenes/visibility.py",
     "kbga/**/*.py",

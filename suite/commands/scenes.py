@@ -146,11 +146,17 @@ def import_map(
 ) -> None:
     """Read a map of another format, and write it as a scene file, with the queries beside it.
 
+    It understands ROS map_server (.yaml), images (.png, .pgm, ...), Moving AI's grids (.map,
+    .scen), polygon meshes (.mesh), SVG drawings, well-known text (.wkt), GeoJSON whose features
+    have no role, and, with the extra gdal, shapefiles, GeoPackages, DXF and more.
+
     To run on a map, no scene file is needed: plan, exact and a matrix take MAP itself, with the
     options of this command behind an @: tb3.yaml@radius=0.2,unknown=free. A map's coordinates are
     taken for metres, y up.
 
     Example: kbga-bench import warehouse.svg --scale 0.5 -o warehouse.geojson
+
+    Example: kbga-bench import tb3.yaml --unknown free --radius 0.2 -o tb3.geojson
     """
     from dataclasses import asdict
 

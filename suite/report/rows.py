@@ -125,7 +125,8 @@ def is_blocked(runs: pd.DataFrame) -> "pd.Series[bool]":
     return all_so & (reason.groupby(query).transform("nunique") == 1)
 
 
-_AN_END = r"(?i)\b(?:start|goal)\b"
+_AN_END = r"\b(?:start|goal) of query\b"
+"""As :attr:`suite.scenes.scene.Query.blocked` begins."""
 
 
 def blocked_note(runs: pd.DataFrame) -> str:

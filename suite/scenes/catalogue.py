@@ -190,7 +190,9 @@ def main_file(source: str) -> Path | None:
     >>> main_file("maps/berlin.map@radius=0.2").as_posix()
     'maps/berlin.map'
     """
-    base, _ = split_modifiers(source)
+    base, modifiers = split_modifiers(source)
+    if modifiers:  # there may be more before them
+        return main_file(base)
     if _is_path(base):
         return Path(base)
     return scene_file(base) if base in _FILES else None
@@ -251,8 +253,9 @@ def _modified(base: str, modifiers: Modifiers, inflate: float | None) -> Scene:
 
 def _stated_radius(name_or_path: str) -> float:
     if split_modifiers(name_or_path)[1]:
-        return 0.0  # it has grown, if at all, when its own modifiers have been heeded
-    is_scene_file = Path(name_or_path).suffix.lower() not in FORMATS and _is_path(name_or_path)
+        return 0.0  # by which it has grown already
+    suffix = Path(name_or_path).suffix.lower()
+    is_scene_file = suffix not in (SUFFIX, *FORMATS) and _is_path(name_or_path)
     return stated_radius(Path(name_or_path)) if is_scene_file else 0.0
 
 
@@ -265,9 +268,12 @@ def _unmodified(
     """A scene as it is drawn. inflate : metres; None, as its file says; 0, not at all."""
     if isinstance(name_or_path, str) and split_modifiers(name_or_path)[1]:
         _refuse(options, name_or_path)
-        return load_scene(name_or_path, inflate=inflate or None)
+        return _inflated(load_scene(name_or_path), inflate or 0.0)
     if _is_path(name_or_path):
         path = Path(name_or_path)
+        if path.suffix == SUFFIX:
+            _refuse(options, path.name)
+            return _inflated(read_kept(path), inflate or 0.0)
         if path.suffix.lower() in FORMATS:
             return read_map(path, options, inflate=inflate or 0.0)
         if knows_no_roles(path):
@@ -275,8 +281,6 @@ def _unmodified(
         if path.suffix and path.suffix.lower() not in SUFFIXES and not _looks_like_json(path):
             raise SceneError(f"{path}: {_no_format(path)}")
         _refuse(options, path.name)
-        if path.suffix == SUFFIX:
-            return _inflated(read_kept(path), inflate or 0.0)
         return read_scene(path, inflate=inflate, keep_blocked=keep_blocked)
     name = str(name_or_path)
     _refuse(options, name)
@@ -366,6 +370,7 @@ def _inflated(scene: Scene, inflate: float) -> Scene:
         path=scene.path,
         inflate=inflate,
         strata={q.name: q.stratum for q in scene.queries if q.stratum is not None},
+        grown_by=scene.radius,
     )
 
 

@@ -45,6 +45,7 @@ def frozen(scene: Scene, time: float, *, inflate: float = 0.0) -> Scene:
         inflate=inflate,
         strata={q.name: q.stratum for q in scene.queries if q.stratum is not None},
         keep_blocked=True,
+        grown_by=scene.radius,
     )
 
 

@@ -169,7 +169,8 @@ def _length(where: str, properties: dict[str, Any], key: str) -> float:
         return typed(given, Length)
     except MisfitError as error:
         raise SceneError(
-            f"{where}: its property '{key}' is {shown(given)}. Give a radius of 0 m or more."
+            f"{where}: its property '{key}' is {shown(given)}. Give the robot's, in metres, "
+            "or leave it out."
         ) from error
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 import pandas as pd
 
 from suite.errors import SceneError, StoreError
-from suite.scenes.catalogue import scene_as_it_was
+from suite.scenes.catalogue import load_scene, scene_as_it_was
 from suite.scenes.kept import SUFFIX, unpack_scene
 from suite.scenes.scene import Query, Scene, scene_fingerprint
 from suite.store.connection import explained, open_for_reading
@@ -40,6 +41,7 @@ class KeptScenes:
         self._store = store
         self._digests = dict(zip(names, queries["digest"], strict=True))
         self._scenes: dict[str, Scene] = {}
+        self._load = cache(load_scene)  # a map has hundreds of queries, and takes a while
 
     def keeps(self, row: Mapping[Any, Any]) -> bool:
         """Whether the store keeps the scene of a row."""
@@ -103,7 +105,8 @@ class KeptScenes:
 
     def _of_file(self, row: Mapping[Any, Any]) -> tuple[Scene, Query]:
         try:
-            return scene_as_it_was(row["scene_source"], row["query"], row["scene_hash"])
+            asked = (row["scene_source"], row["query"], row["scene_hash"])
+            return scene_as_it_was(*asked, load=self._load)
         except SceneError as error:
             raise SceneError(
                 f"{error} The row is of a kbga-bench that did not keep scenes in the store: once "

@@ -66,7 +66,7 @@ MAPS: Mapping[str, Callable[[], Drawn]] = {
     "iron-harvest": lambda: drawn(mesh_scene(IRON_HARVEST)),
     "denver-10k": lambda: copies(grid_scene(DENVER), 4, 3),
     "iron-harvest-10k": lambda: copies(mesh_scene(IRON_HARVEST), 3, 1),
-    "scattered-10k": lambda: drawn(scattered(2200, 1)),
+    "scattered-10k": lambda: drawn(scattered(2900, 1)),
     "denver-20k": lambda: copies(grid_scene(DENVER), 6, 4),
     "iron-harvest-20k": lambda: copies(mesh_scene(IRON_HARVEST), 3, 2),
     "denver-50k": lambda: copies(grid_scene(DENVER), 8, 7),

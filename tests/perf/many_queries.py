@@ -107,7 +107,7 @@ def _blocked(scene: Scene, number: int, planner: int) -> RunRecord:
          "cpu_to_best_s", "generations", "generation_of_best", "checks", "path", "claim_differs")
     )  # fmt: skip
     cell = _cell(scene, f"{number},-1:1,1", planner, f"blocked {number}")
-    reason = f"query {number},-1:1,1: the start lies outside the workspace."
+    reason = f"yard, start of query '{number},-1:1,1': lies outside the workspace."
     return make_record(
         cell, **nothing, status=PlanStatus.REFUSED, reason=reason, improvements=(), trace=()
     )

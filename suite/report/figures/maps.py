@@ -7,6 +7,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+import shapely
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator
@@ -22,6 +23,9 @@ from suite.scenes.scene import Query, Scene
 WIDTH = 7.6
 AROUND = 1.5
 """Height of the title, the axis, the legend and the sentence below, inches."""
+
+SEEN_AROUND = 0.02
+"""Of the larger side of what is seen of a map, around it."""
 
 MANY = 300
 """Marks of a planner in a panel from which they are drawn smaller."""
@@ -62,9 +66,12 @@ def plot_map(
     queries : int
         Of the map, in all.
     """
-    size = (WIDTH, style.height_for(scene, WIDTH) + AROUND)
-    figure, axes = plt.subplots(figsize=size, layout="constrained")
+    xmin, ymin, xmax, ymax = seen_bounds(scene, [one.query for one in hard])
+    height = WIDTH * min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0)
+    figure, axes = plt.subplots(figsize=(WIDTH, height + AROUND), layout="constrained")
     draw_room(axes, scene)
+    axes.set_xlim(xmin, xmax)
+    axes.set_ylim(ymin, ymax)
     draw_obstacles(axes, scene, 0.4)
     widths = dict(zip(planners, np.linspace(3.6, 1.0, max(len(planners), 2)), strict=False))
     for number, one in enumerate(hard, 1):
@@ -79,6 +86,23 @@ def plot_map(
     note = MAP_NOTE.format(shown=len(hard), queries=queries, rule=HARDEST_RULE)
     style.legend(figure, planners, note, only_lines=True)
     return figure
+
+
+def seen_bounds(scene: Scene, queries: Sequence[Query]) -> tuple[float, float, float, float]:
+    """Bounds of the parts of free space that queries lie in, with a margin; metres.
+
+    Most of a map that a robot has drawn may be unknown, or outside.
+
+    Parameters
+    ----------
+    scene : Scene
+    queries : sequence of Query
+    """
+    ends = shapely.MultiPoint([end for query in queries for end in (query.start, query.goal)])
+    parts = [part for part in scene.regions.geoms if part.dwithin(ends, scene.coordinates.grid)]
+    seen = shapely.MultiPolygon(parts).bounds if parts else scene.bounds
+    margin = SEEN_AROUND * max(seen[2] - seen[0], seen[3] - seen[1])
+    return seen[0] - margin, seen[1] - margin, seen[2] + margin, seen[3] + margin
 
 
 def _draw_ends(axes: Axes, query: Query, number: int) -> None:

@@ -9,6 +9,9 @@ from shapely.geometry import Polygon
 
 from suite.scenes.scene import Query, Scene
 
+Bounds = tuple[float, float, float, float]
+"""xmin, ymin, xmax, ymax."""
+
 Place = tuple[int, int]
 """In the units of a picture."""
 
@@ -53,14 +56,16 @@ class Drawing:
         return "".join(map(self.outline, paths))
 
 
-def draw(scene: Scene) -> Drawing:
+def draw(scene: Scene, seen: Bounds | None = None) -> Drawing:
     """Draw a scene.
 
     Parameters
     ----------
     scene : Scene
+    seen : Bounds, optional
+        Of what fills the picture, metres; default: the workspace.
     """
-    xmin, ymin, xmax, ymax = scene.bounds
+    xmin, ymin, xmax, ymax = seen or scene.bounds
     scale = LONGER_SIDE / max(xmax - xmin, ymax - ymin)
     width, height = (round(scale * side) for side in (xmax - xmin, ymax - ymin))
 

@@ -12,6 +12,7 @@ import pandas as pd
 import plotly.graph_objects as go
 
 from suite.errors import KbgaBenchError
+from suite.report.figures.maps import seen_bounds
 from suite.report.figures.style import LEAST_GAP, gap_scale, plain_number
 from suite.report.html.appearance import PLANNERS_AT_MOST, Appearance, appearance
 from suite.report.html.cells import Sheet, sheet
@@ -145,21 +146,23 @@ def _panel(
 def _drawn(
     runs: pd.DataFrame, shown: list[str], evidence: Evidence
 ) -> tuple[Drawing | None, list[HardQuery], str]:
-    hard = []
     try:
-        first = runs.iloc[0]
-        scene, _ = evidence.scenes.of(first.to_dict())
-        drawing = draw(scene)
-        for i, name in enumerate(shown):
-            here = runs[runs["query"] == name]
-            row = here.iloc[0]
-            if row["scene_source"] != first["scene_source"]:
-                continue
-            _, query = evidence.scenes.of(row.to_dict())
-            paths = best_paths(here, drawing, evidence, widest=10.0)
-            hard.append(HardQuery(i + 1, query_label(name), drawing.ends(query), paths))
+        scene, first = evidence.scenes.of(runs.iloc[0].to_dict())
+        here = {name: runs[runs["query"] == name] for name in shown}
+        found = {name: evidence.scenes.of(rows.iloc[0].to_dict()) for name, rows in here.items()}
     except KbgaBenchError as error:
         return None, [], f"It can't be drawn: {error}"
+    asked = {name: query for name, (its, query) in found.items() if its.hash == scene.hash}
+    drawing = draw(scene, seen_bounds(scene, list(asked.values()) or [first]))
+    hard = [
+        HardQuery(
+            shown.index(name) + 1,
+            query_label(name),
+            drawing.ends(query),
+            best_paths(here[name], drawing, evidence, widest=10.0),
+        )
+        for name, query in asked.items()
+    ]
     return drawing, hard, ""
 
 

@@ -44,6 +44,8 @@ def read_vector(path: Path, options: MapOptions) -> Drawing:
             f"{path.name}: is read by GDAL, which is not installed. "
             "Run: pip install 'kbga-bench[gdal]'"
         )
+    if path.suffix.lower() == OUTLINES:
+        _refuse_without_end(path)
     layer = _layer(path, options.layer)
     crs, shapes = _read(path, layer)
     if path.suffix.lower() == OUTLINES:
@@ -53,6 +55,18 @@ def read_vector(path: Path, options: MapOptions) -> Drawing:
     )
     check_projection(path.name, crs, drawing.workspace.bounds)
     return drawing
+
+
+def _refuse_without_end(path: Path) -> None:
+    """Refuse a DXF that is cut off: in some places GDAL would wait for its end forever."""
+    try:
+        text = path.read_bytes()
+    except OSError as error:
+        raise SceneError(f"{path}: can't be read ({error.strerror}).") from error
+    if not text.rstrip(b"\x00\x1a \t\r\n").endswith(b"EOF"):
+        raise SceneError(
+            f"{path.name}: no DXF, or cut off: its last line is not EOF. Save it again, as text."
+        )
 
 
 def _layer(path: Path, wanted: str | None) -> str:

@@ -99,6 +99,9 @@ def test_a_name_that_is_installed_already_is_ambiguous(file):
     ("reference", "code", "message"),
     [
         ("{file}x.py", "", "there is no file"),
+        ("~nobody-at-all/x.py", "", "there is no file"),
+        ("x" * 5000 + ".py", "", "there is no file"),
+        ("x\0.py", "", "there is no file"),
         ("{file}:Missing", CODE, "there is no class Missing"),
         ("{file}", "x = 1", "no subclass of suite.planner.Planner"),
         ("{file}", "import no_such_module", "ModuleNotFoundError"),

@@ -6,7 +6,7 @@ from suite.planner import PlanStatus
 from suite.store.record import RunRecord
 from tests.suite.report.measured_rows import measured
 
-OUTSIDE = "query 'gate': the start lies outside the workspace."
+OUTSIDE = "town, start of query 'gate': (-1, 2) lies outside the workspace."
 
 
 def asked(planner: str, query: str, cost: float | None, seed: int = 0, **more: Any) -> RunRecord:

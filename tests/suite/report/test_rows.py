@@ -2,6 +2,7 @@
 
 import pytest
 
+from suite.harness.cell import refused
 from suite.report.rows import (
     QUERIES_APART,
     blocked_note,
@@ -11,6 +12,8 @@ from suite.report.rows import (
     places,
     with_queries_together,
 )
+from suite.scenes.catalogue import load_scene
+from tests.suite.harness.records import make_cell
 from tests.suite.report.map_rows import asked, blocked
 from tests.suite.report.study_rows import runs_of
 
@@ -53,6 +56,13 @@ def test_a_query_that_no_planner_could_be_asked_is_blocked():
     assert blocked_note(runs[:1]) == ""
 
 
+def test_what_the_harness_writes_of_a_blocked_query_is_known_here():
+    query = load_scene("zigzag@radius=0.5").query("-5,-5:50,50")
+    assert query.blocked is not None
+    row = refused(make_cell(query=query.name), query.blocked)
+    assert is_blocked(runs_of(row)).all()
+
+
 @pytest.mark.parametrize(
     "other",
     [
@@ -67,6 +77,7 @@ def test_a_refusal_of_a_planner_is_not_a_blocked_query(other):
 
 def test_a_planner_that_refuses_a_scene_alone_is_not_taken_for_a_blocked_query():
     assert not is_blocked(runs_of(blocked("kbga", "b", reason="no scenes with holes"))).any()
+    assert not is_blocked(runs_of(blocked("kbga", "b", reason="start and goal are near"))).any()
 
 
 def test_tables_that_put_the_queries_together_say_so():

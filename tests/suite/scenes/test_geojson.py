@@ -474,9 +474,7 @@ def test_a_radius_that_is_none_is_refused(read, key, bad):
     if bad is None:
         assert read(document).radius == 0.0
         return
-    with pytest.raises(
-        SceneError, match=rf"its property '{key}' is .*Give a radius of 0 m or more"
-    ):
+    with pytest.raises(SceneError, match=rf"its property '{key}' is .*Give the robot's, in metres"):
         read(document)
 
 
@@ -487,6 +485,13 @@ def test_a_grown_scene_is_written_as_it_is_and_not_grown_again(read, tmp_path):
     grown_more = read_scene(tmp_path / "again.geojson", inflate=0.25)
     assert grown_more.radius == 0.75
     assert grown_more.obstacles[0].polygon.covers(scene.obstacles[0].polygon)
+
+
+def test_what_has_grown_keeps_its_radius_when_it_is_modified(read, tmp_path):
+    write_scene(read(GOOD, inflate=0.5), tmp_path / "grown.geojson")
+    for modifiers, radius in [("@turn=90", 0.5), ("@scale=2", 1.0), ("@radius=0.25", 0.75)]:
+        assert load_scene(f"{tmp_path / 'grown.geojson'}{modifiers}").radius == radius
+        assert load_scene(f"{tmp_path / 'grown.geojson'}@shift=1{modifiers}").radius == radius
 
 
 def test_blocked_queries_survive_writing_and_reading(tmp_path):

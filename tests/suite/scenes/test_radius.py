@@ -1,5 +1,7 @@
 """A robot with a radius: no accepted path comes nearer to anything that is drawn than that."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -8,9 +10,11 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 from shapely.geometry import Polygon
 
+from suite.errors import SceneError
 from suite.referee.path import Referee, judge
 from suite.scenes.catalogue import load_scene
 from suite.scenes.exact import shortest_path
+from suite.scenes.geojson import write_scene
 from suite.scenes.maps.formats import FORMATS
 from suite.scenes.samples import random_queries
 from suite.scenes.scene import Scene, make_scene
@@ -129,3 +133,31 @@ def test_in_a_scanned_room_no_shortest_path_comes_nearer_to_a_cell_that_is_occup
         path = shortest_path(scene, query).path
         assert path is not None
         assert clearance(scene, path, drawn.workspace, occupied) >= radius - 1e-9
+
+
+def test_a_scene_file_may_say_how_large_the_robot_is(tmp_path):
+    wall, ends = shapely.box(4, 0, 6, 7), ((1, 1), (9, 1))
+    room = shapely.box(0, 0, 10, 10)
+    file, plain = tmp_path / "hall.geojson", make_scene("hall", room, [wall], ends)
+    write_scene(replace(plain, properties={"radius": 0.5}), file)
+    grown = make_scene("hall", room, [wall], ends, inflate=0.5)
+    read = load_scene(file)
+    assert (read.hash, read.radius, dict(read.properties)) == (grown.hash, 0.5, {})
+    assert load_scene(str(file), inflate=0.25).radius == 0.25
+    assert load_scene(f"{file}@radius=0.25").radius == 0.25
+    turned = load_scene(f"{file}@turn=90")
+    assert turned.radius == 0.5
+    assert shortest_path(turned, turned.query()).length == pytest.approx(
+        shortest_path(grown, grown.query()).length
+    )
+    write_scene(read, file)  # what has grown is not grown again
+    assert (load_scene(file).hash, load_scene(file).radius) == (grown.hash, 0.5)
+
+
+@pytest.mark.parametrize("radius", ["wide", -1, [1]])
+def test_a_radius_of_a_file_that_is_none_is_refused(tmp_path, radius):
+    file = tmp_path / "hall.geojson"
+    scene = make_scene("hall", shapely.box(0, 0, 10, 10), [], {})
+    write_scene(replace(scene, properties={"radius": radius}), file)
+    with pytest.raises(SceneError, match=r"its property 'radius' is .*\. Give the robot's"):
+        load_scene(file)

@@ -2,13 +2,20 @@
 
 import numpy as np
 import pytest
+import shapely
 
 from suite.report.figures.files import as_png
-from suite.report.figures.maps import HardQuery, map_figures, plot_map, plot_queries
+from suite.report.figures.maps import (
+    HardQuery,
+    map_figures,
+    plot_map,
+    plot_queries,
+    seen_bounds,
+)
 from suite.report.figures.style import LEAST_GAP, numbered
 from suite.report.statistics.over_queries import query_measures
 from suite.scenes.catalogue import load_scene
-from suite.scenes.scene import Query
+from suite.scenes.scene import Query, make_scene
 from tests.suite.report.map_rows import asked
 from tests.suite.report.measured_rows import steps
 
@@ -57,3 +64,15 @@ def test_a_map_is_drawn_with_the_numbers_of_its_hardest_queries():
     assert [text.get_text() for text in legend.get_texts()] == ["kbga", "prm"]
     assert "2 of 100 queries" in legend.get_title().get_text().replace("\n", " ")
     as_png(figure)
+
+
+def test_a_map_is_shown_where_its_queries_are_and_not_where_all_is_closed():
+    yard = shapely.box(40, 40, 50, 45)
+    court = shapely.box(80, 80, 81, 81)
+    unknown = shapely.box(0, 0, 100, 100).difference(yard).difference(court)
+    scene = make_scene(
+        "mostly unknown", shapely.box(0, 0, 100, 100), [unknown], ((41, 41), (49, 44))
+    )
+    assert seen_bounds(scene, scene.queries) == pytest.approx((39.8, 39.8, 50.2, 45.2))
+    whole = load_scene("zigzag")
+    assert seen_bounds(whole, whole.queries) == pytest.approx((-2.0, -2.0, 102.0, 102.0))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from suite.scenes.maps.fill import filled
@@ -19,6 +19,7 @@ def angle_around(ring: np.ndarray, point: np.ndarray) -> int:
     return round(float(np.angle(b / a).sum() / (2.0 * np.pi)))
 
 
+@settings(max_examples=40)
 @given(rings)
 def test_a_point_is_inside_as_often_as_the_rings_go_round_it(drawn):
     given_rings = [np.array(ring, dtype=np.float64) for ring in drawn]

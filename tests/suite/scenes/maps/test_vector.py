@@ -119,10 +119,23 @@ def test_a_reference_system_is_planar_metres_or_refused(crs, planar):
 def test_a_file_that_is_none_says_so(tmp_path, name):
     file = tmp_path / name
     file.write_bytes(b"nothing of the kind")
-    with pytest.raises(SceneError, match=rf"^{name}: (GDAL can't read it|holds no)"):
+    with pytest.raises(
+        SceneError, match=rf"^{name}: (GDAL can't read it|holds no|no DXF, or cut off)"
+    ):
         load_scene(file)
     with pytest.raises(SceneError, match=r"gone\.shp: can't be read \(there is no such file\)"):
         load_scene(tmp_path / "gone.shp")
+
+
+def test_a_dxf_that_is_cut_off_is_refused_for_which_gdal_would_wait_forever(tmp_path):
+    file = tmp_path / "plan.dxf"
+    file.write_text(
+        "0\nSECTION\n2\nENTITIES\n0\nLWPOLYLINE\n8\nwalls\n90\n4\n70\n1\n10\n0\n20\n0\n10\n3\n20\n0"
+    )
+    with pytest.raises(
+        SceneError, match=r"^plan\.dxf: no DXF, or cut off: its last line is not EOF"
+    ):
+        load_scene(file)
 
 
 def test_without_gdal_the_error_says_what_to_install(tmp_path, monkeypatch):
