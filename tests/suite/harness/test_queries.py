@@ -87,7 +87,7 @@ def test_a_robot_and_snapping_are_part_of_the_scene_and_its_name(matrix):
     snap = true
     """
     found = matrix(text)
-    names = ["maze@turn=3,radius=0.25,snap=yes", "map@radius=0.25,snap=yes", "zigzag"]
+    names = ["maze@turn=3,radius=0.25,snap=yes", "map@radius=0.25,snap=yes", "zigzag@radius=0"]
     assert [scene.name for scene in found.scenes] == names
     assert found.sources[1].endswith("/map.wkt@radius=0.25,snap=yes")
     assert found.scenes[0].hash == load_scene("maze@turn=3,radius=0.25").hash
