@@ -73,7 +73,7 @@ def query_label(name: str) -> str:
     >>> query_label("main"), query_label("12.345678,4.5:20.125,9.25")
     ('main', '12.35,4.5:20.12,9.25')
     >>> query_label("from the loading bay to the far gate")
-    'from the loading…he far gate'
+    'from the loadi… the far gate'
     """
     found = _ENDS.fullmatch(name)
     if found is not None:

@@ -19,10 +19,11 @@ from numpy.typing import NDArray
 from shapely.affinity import translate
 from shapely.geometry import Polygon, box
 
+from suite.scenes.catalogue import load_scene
 from suite.scenes.exact import prepare, shortest_path
 from suite.scenes.scattered import scattered
 from suite.scenes.scene import Query, Scene, make_scene
-from tests.suite.scenes.real_maps import grid_scene, mesh_scene
+from tests.suite.scenes.real_maps import FOLDER
 
 DENVER, ARENA = "Denver_1_256.map", "arena.map"
 IRON_HARVEST = "ironharvest_scene_mp_2p_01.mesh"
@@ -30,6 +31,11 @@ STREET = 0.02
 """Width of the streets between copies, as a share of a copy's width."""
 
 Drawn = tuple[Polygon, list[Polygon], tuple[NDArray[np.float64], NDArray[np.float64]]]
+
+
+def public(name: str) -> Scene:
+    """A public map."""
+    return load_scene(FOLDER / name)
 
 
 def copies(scene: Scene, columns: int, rows: int) -> Drawn:
@@ -61,16 +67,16 @@ def outlines(scene: Scene) -> list[Polygon]:
 
 
 MAPS: Mapping[str, Callable[[], Drawn]] = {
-    "arena": lambda: drawn(grid_scene(ARENA)),
-    "denver": lambda: drawn(grid_scene(DENVER)),
-    "iron-harvest": lambda: drawn(mesh_scene(IRON_HARVEST)),
-    "denver-10k": lambda: copies(grid_scene(DENVER), 4, 3),
-    "iron-harvest-10k": lambda: copies(mesh_scene(IRON_HARVEST), 3, 1),
+    "arena": lambda: drawn(public(ARENA)),
+    "denver": lambda: drawn(public(DENVER)),
+    "iron-harvest": lambda: drawn(public(IRON_HARVEST)),
+    "denver-10k": lambda: copies(public(DENVER), 4, 3),
+    "iron-harvest-10k": lambda: copies(public(IRON_HARVEST), 3, 1),
     "scattered-10k": lambda: drawn(scattered(2900, 1)),
-    "denver-20k": lambda: copies(grid_scene(DENVER), 6, 4),
-    "iron-harvest-20k": lambda: copies(mesh_scene(IRON_HARVEST), 3, 2),
-    "denver-50k": lambda: copies(grid_scene(DENVER), 8, 7),
-    "iron-harvest-50k": lambda: copies(mesh_scene(IRON_HARVEST), 5, 3),
+    "denver-20k": lambda: copies(public(DENVER), 6, 4),
+    "iron-harvest-20k": lambda: copies(public(IRON_HARVEST), 3, 2),
+    "denver-50k": lambda: copies(public(DENVER), 8, 7),
+    "iron-harvest-50k": lambda: copies(public(IRON_HARVEST), 5, 3),
 }
 
 

@@ -340,7 +340,7 @@ def test_errors_are_one_line_and_come_first(error_of, hostile, wall_file, tmp_pa
 def test_a_bad_matrix_makes_no_store(error_of, tmp_path):
     (tmp_path / "bad.toml").write_text("seeds = 3")
     message = error_of("run", tmp_path / "bad.toml", "--store", tmp_path / "s.db")
-    assert "bad.toml: 'scenes' is missing" in message
+    assert "bad.toml: 'planner' is missing: give at least one [[planner]]" in message
     assert not (tmp_path / "s.db").exists()
 
 

@@ -12,6 +12,7 @@ import pytest
 import shapely
 
 from suite.cli import main
+from suite.harness.fleet import stop_server
 from suite.scenes.dynamics import Detection, Dynamics, constant_speed
 from suite.scenes.geojson import write_scene
 from suite.scenes.scene import Obstacle, make_scene
@@ -69,6 +70,7 @@ def made(tmp_path_factory):
     write_scene(gate, folder / "gate.geojson")
     (folder / "standing.toml").write_text(STANDING + PLANNERS)
     (folder / "moving.toml").write_text(MOVING + ZERO + PLANNERS)
+    stop_server()  # one that other tests have warmed hands nothing on
     with pytest.MonkeyPatch.context() as patch:
         for name in ("standing", "moving"):
             words = ["run", folder / f"{name}.toml", "--store", folder / "s.db", "--snapshots", 1]
