@@ -10,9 +10,14 @@ import datetime
 import json
 import math
 import random
-from collections.abc import Callable, Iterator
+import warnings
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+from suite.scenes.scene import SceneWarning
+
+T = TypeVar("T")
 
 Place = tuple[Any, Any]
 """A dict or list, and a key or index of it."""
@@ -185,6 +190,40 @@ def _toml(value: Any) -> str:
     if isinstance(value, str):
         return json.dumps(value)
     return str(value)  # numbers and dates
+
+
+def check_files(
+    files: Iterable[tuple[Path, Path]],
+    load: Callable[[Path], T],
+    right: Callable[[T], None],
+    wrong: type[Exception],
+    longest: int,
+) -> None:
+    """Load files that went wrong: each is an error that can be read, or right, and both occur.
+
+    Parameters
+    ----------
+    files : (what to load, the file that went wrong) of each.
+    load : raises ``wrong`` if it can't be used; no warning but of a mended scene is let pass.
+    right : looks at what was loaded.
+    longest : characters of an error.
+    """
+    outcomes = {"error": 0, "right": 0}
+    for named, bad in files:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            warnings.simplefilter("ignore", SceneWarning)
+            try:
+                found = load(named)
+            except wrong as error:
+                # A map's error names the map, though another file of it be the bad one.
+                check_words(error, named if named.name in str(error) else bad, longest)
+                outcomes["error"] += 1
+            else:
+                right(found)
+                outcomes["right"] += 1
+    # Mutations that nobody notices, or that leave nothing to be read, would test nothing.
+    assert min(outcomes.values()) > 0, outcomes
 
 
 def check_words(error: Exception, file: Path, longest: int) -> None:
