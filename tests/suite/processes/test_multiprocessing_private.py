@@ -7,6 +7,7 @@ import stat
 import subprocess
 import sys
 import tempfile
+import time
 from multiprocessing import forkserver, spawn
 
 import psutil
@@ -58,7 +59,9 @@ def look_around(answers):
 
 
 def test_the_fork_server_is_found_and_is_gone_when_it_is_forgotten(server):
-    assert "multiprocessing.forkserver" in " ".join(server.cmdline())
+    while not (words := server.cmdline()):  # between its fork and its exec it has none
+        time.sleep(0.001)
+    assert "multiprocessing.forkserver" in " ".join(words)
     assert server.ppid() == os.getpid()
     forget_server()
     assert not server.is_running()
