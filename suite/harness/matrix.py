@@ -203,8 +203,7 @@ def load_matrix(name_or_path: str | Path, *, maps: Sequence[Path] = ()) -> Matri
     path = matrix_file(name_or_path)
     source, file = read_matrix_file(path)
     seeds = _seeds(source, (), file.seeds)
-    added = [str(folder.resolve()) for folder in maps]
-    named = _named_scenes(source, file, path.parent, added, seeds)
+    named = _named_scenes(source, file, path.parent, _added(source, maps), seeds)
     scenes, sources = _scenes(source, [entry.name for entry in named], path.parent)
     _name_plugins(source, file, path.parent)
     worlds = _worlds(source, file, scenes)
@@ -252,7 +251,7 @@ def _named_scenes(
 ) -> list[_Named]:
     if not (file.scenes or maps):
         what = "it names none. Name some, or a folder of maps with --maps."
-        raise source.error((), f"scenes: {what}")
+        raise source.error(("scenes",), what)
     named = []
     for number, entry in enumerate([*file.scenes, *maps]):
         scene = SceneEntry(entry) if isinstance(entry, str) else entry
@@ -271,6 +270,14 @@ def _named_scenes(
         except SceneError as error:
             raise source.error(("scenes",), str(error)) from error
     return named
+
+
+def _added(source: Source, folders: Sequence[Path]) -> list[str]:
+    """The maps of the folders that the command names."""
+    try:
+        return [str(path) for folder in folders for path in maps_in(folder.resolve())]
+    except SceneError as error:
+        raise source.error(("--maps",), str(error)) from error
 
 
 def _maps_of(name: str, folder: Path) -> list[str]:

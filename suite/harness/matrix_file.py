@@ -198,11 +198,17 @@ class Source:
     document: dict[str, Any]
 
     def error(self, keys: Sequence[str | int], what: str) -> MatrixError:
-        """An error that names the place that some keys lead to, by the names that stand there."""
+        """An error that names the place that some keys lead to, by the names that stand there.
+
+        Where nothing is written, the command may have said it: then the keys alone are named.
+        """
         words: list[str] = []
         place: Any = self.document
         for key in keys:
-            place = place[key]
+            try:
+                place = place[key]
+            except (KeyError, IndexError, TypeError):
+                place = None
             if isinstance(key, str):
                 words.append(key)
             else:

@@ -10,7 +10,7 @@ YARD = "MULTIPOLYGON (((0 0, 30 0, 30 1, 0 1, 0 0)), ((9 5, 20 5, 20 30, 9 30, 9
 
 MATRIX = """
 {scenes}
-queries = {{ random = 3, seed = 1 }}
+{queries}
 seeds = 1
 
 [[planner]]
@@ -29,8 +29,8 @@ def maps(tmp_path):
 
 @pytest.fixture
 def matrix_of(tmp_path):
-    def write(scenes):
-        (tmp_path / "m.toml").write_text(MATRIX.format(scenes=scenes))
+    def write(scenes, queries="queries = { random = 3, seed = 1 }"):
+        (tmp_path / "m.toml").write_text(MATRIX.format(scenes=scenes, queries=queries))
         return tmp_path / "m.toml"
 
     return write
@@ -59,3 +59,14 @@ def test_the_matrix_of_real_maps_asks_a_hundred_queries_of_each(maps):
 def test_without_any_scene_it_says_what_to_give(matrix_of):
     with pytest.raises(MatrixError, match=r"none\. Name some, or a folder of maps with --maps"):
         load_matrix(matrix_of(""))
+
+
+def test_what_is_wrong_with_the_maps_of_the_command_is_an_error_in_words(maps, matrix_of, tmp_path):
+    alone = matrix_of("")
+    with pytest.raises(MatrixError, match=r"m\.toml, --maps: .*nowhere: is no folder"):
+        load_matrix(alone, maps=[tmp_path / "nowhere"])
+    with pytest.raises(MatrixError, match=r"m\.toml, scenes: room: is a map without queries"):
+        load_matrix(matrix_of("", queries=""), maps=[maps])
+    (maps / "spoiled.map").write_text("type octile")
+    with pytest.raises(MatrixError, match=r"m\.toml, scenes: '.*spoiled\.map': spoiled\.map"):
+        load_matrix(alone, maps=[maps])

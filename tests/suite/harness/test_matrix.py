@@ -185,7 +185,11 @@ def test_a_plugin_that_cannot_be_imported_is_no_reason_to_refuse_the_matrix(writ
         ("seeds = 3", 'seeds = 3\nplugins = ["a.py"]', "plugins 1: a.py: there is no file /"),
         ("seeds = 3", 'seeds = 3\nplugins = ["a"]', "plugins 1: a: neither a .py file nor a class"),
         ("seeds = 3", "seeds = 3\nseedz = 3", "Did you mean 'seeds'?"),
-        ('["zigzag"]', "[]", "scenes: it names none. Name some, or a folder of maps with --maps."),
+        (
+            '["zigzag"]',
+            "[]",
+            "walls.toml, scenes: it names none. Name some, or a folder of maps with --maps.",
+        ),
         ('["zigzag"]', '["zigzga"]', "Did you mean 'zigzag'?"),
         ('["zigzag"]', '["zigzag", "zigzag"]', "two scenes are named 'zigzag'"),
         (
