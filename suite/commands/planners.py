@@ -7,7 +7,7 @@ longer to import than ``list`` takes to answer.
 from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -84,7 +84,6 @@ def plan(
         parse_settings,
         query_names,
         succeeded,
-        summary,
     )
     from suite.planner import Budget, Recorder
     from suite.scenes.modifiers import with_modifiers
@@ -105,12 +104,7 @@ def plan(
     if query == "all":
         if plot is not None:
             raise typer.BadParameter("It draws one run: name a query.", param_hint="--plot")
-        records = _each(cells, as_line, style)
-        if style is TextFormat.JSON:
-            print_json([as_data(record) for record in records])
-        else:
-            say(summary(records))
-        raise typer.Exit(0 if all(map(succeeded, records)) else 1)
+        raise _after_each(cells, as_line, as_data, succeeded, style)
     [cell] = cells
     # Of the first population only: more would slow down the run that is timed.
     recorder = Recorder(snapshot_of=lambda generation: plot is not None and generation == 0)
@@ -132,18 +126,27 @@ def plan(
     raise typer.Exit(0 if succeeded(record) else 1)
 
 
-def _each(
-    cells: "list[Cell]", as_line: "Callable[[RunRecord], str]", style: TextFormat
-) -> "list[RunRecord]":
-    """The records of several runs; for people each is told when it is there."""
+def _after_each(
+    cells: "list[Cell]",
+    as_line: "Callable[[RunRecord], str]",
+    as_data: "Callable[[RunRecord], dict[str, Any]]",
+    is_good: "Callable[[RunRecord], bool]",
+    style: TextFormat,
+) -> typer.Exit:
+    """Run several cells, say what came of each and of all, and give the code to exit with."""
     from suite.harness.cell import run_cell
+    from suite.harness.single import summary
 
     records = []
     for cell in cells:
         records.append(run_cell(cell))
         if style is TextFormat.TEXT:
             say(as_line(records[-1]))
-    return records
+    if style is TextFormat.JSON:
+        print_json([as_data(record) for record in records])
+    else:
+        say(summary(records))
+    return typer.Exit(0 if all(map(is_good, records)) else 1)
 
 
 def check(
@@ -292,7 +295,6 @@ def simulate(
         simulation_as_data,
         simulation_as_text,
         simulation_of,
-        summary,
         unhurt,
         world_for,
     )
@@ -332,12 +334,7 @@ def simulate(
     if query == "all":
         if plot is not None or animate is not None:
             raise typer.BadParameter("Only one run is drawn: name a query.", param_hint="--query")
-        records = _each(cells, as_line, style)
-        if style is TextFormat.JSON:
-            print_json([simulation_as_data(record) for record in records])
-        else:
-            say(summary(records))
-        raise typer.Exit(0 if all(map(unhurt, records)) else 1)
+        raise _after_each(cells, as_line, simulation_as_data, unhurt, style)
     [cell] = cells
     record = run_cell(cell)
     if style is TextFormat.JSON:
