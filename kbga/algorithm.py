@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from kbga.counter import ASKED, COMPUTED, is_spent, make_counter
@@ -23,6 +24,7 @@ from kbga.operators.repair import scratch_for
 from kbga.problem import Problem, make_problem
 from kbga.selection import keep_elite
 from kbga.settings import KBGASettings
+from kbga.taut import LEAST_GAIN, length_of_path, pull_taut
 from kbga.trace import trace_of
 from kbga.tuning import empty_tally, rates_of, tuned
 from suite.scenes.scene import Query, Scene
@@ -91,6 +93,7 @@ class KBGA:
         self.settings = settings
         self._rng = rng
         self._scene = scene
+        self._start = query.start
         self._problem = self._problem_of(scene)
         self._rates = rates_of(settings)
         self.population = empty_population(settings.population_size, settings.max_nodes)
@@ -104,6 +107,8 @@ class KBGA:
         self.best_path: NDArray[np.float64] | None = None
         self.best_cost = float("inf")
         self.generation_of_best = 0
+        self._best_on_lattice: NDArray[np.float64] | None = None
+        self._least_on_lattice = float("inf")
         self.lowest_cost = float("inf")
         self.generation_of_lowest = 0
         self._reports: dict[int, GenerationReport] = {}
@@ -173,7 +178,7 @@ class KBGA:
                 self.population,
                 self._children,
                 before,
-                self.best_cost,
+                self._least_on_lattice,
                 self._scratch,
                 self._problem,
                 self._rates,
@@ -200,10 +205,16 @@ class KBGA:
     def _take_best(self, population: Population, first: int, last: int) -> bool:
         """Note the best feasible path among some chromosomes if it is a better one; whether."""
         best = best_feasible(population, first, last)
-        if best < 0 or not population.chromosomes["cost"][best] < self.best_cost:
+        if best < 0 or not population.chromosomes["cost"][best] < self._least_on_lattice:
             return False
-        self.best_path = path_of(population, best)
-        self.best_cost = float(population.chromosomes["cost"][best])
+        self._best_on_lattice = path = path_of(population, best)
+        self._least_on_lattice = cost = float(population.chromosomes["cost"][best])
+        if self.settings.taut:
+            path = pull_taut(path, self._problem.arrays, self._counter)
+            cost = min(cost, length_of_path(path))
+            if cost >= self.best_cost * (1.0 - LEAST_GAIN):
+                return False
+        self.best_path, self.best_cost = path, cost
         self.generation_of_best = self.generation
         return True
 
@@ -247,6 +258,7 @@ class KBGA:
         self._counter[:] = make_counter(checks)
         self.generation = self.generation_of_best = self.generation_of_lowest = 0
         self.best_path, self.best_cost, self.lowest_cost = None, float("inf"), float("inf")
+        self._best_on_lattice, self._least_on_lattice = None, float("inf")
         self._reports.clear()
         x, y = (float(v) for v in start)  # of one type each, whatever the array's
         penalty = self._rates.penalty
@@ -262,13 +274,13 @@ class KBGA:
 
         The population may have lost it to infeasible ones that cost less.
         """
-        if self.best_path is None:
+        path = self._best_on_lattice
+        if path is None:
             return
         worst = int(self.population.chromosomes["cost"].argmax())
         copy_chromosome(self.population, 0, self.population, worst)
         lattice = self._problem.lattice
-        genes = genes_of(self.best_path, lattice)
-        put_path(self.population, 0, genes, self.best_path[[0, -1]], lattice)
+        put_path(self.population, 0, genes_of(path, lattice), path[[0, -1]], lattice)
 
     def _disturb(self) -> None:
         best = best_feasible(self.population, 0, self._size)
@@ -287,11 +299,14 @@ class KBGA:
         )
 
     def _problem_of(self, scene: Scene) -> Problem:
+        room = scene.workspace
+        if self.settings.over == "region":
+            room = shapely.box(*region_around(scene.regions, self._start).bounds)
         return make_problem(
             scene.arrangement,
-            scene.bounds,
+            room.bounds,
             self.settings.resolution,
-            room=scene.workspace,
+            room=room,
             reach=int(self.settings.repair_reach),
         )
 
@@ -376,6 +391,11 @@ class KBGA:
             if ended or self.generation >= self.settings.max_generations:
                 return self.best_path
             improved = self.step(on_improvement)
+
+
+def region_around(regions, place):
+    at = shapely.Point(place)
+    return min(regions.geoms, key=lambda region: region.distance(at))
 
 
 def _query_of(scene: Scene, query: Query | str | None) -> Query:

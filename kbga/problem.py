@@ -237,12 +237,15 @@ def _find_at_corners(group: int, problem: Problem) -> int:
     or those of another corner already, of the cells around it too. Shortest paths bend at corners
     only.
     """
+    first = problem.near_start[group]
     count = 0
     for corner in range(problem.corner_start[group], problem.corner_start[group + 1]):
-        found = _add_near_corner(problem, corner, 0, problem.near_start[group], count)
+        found = _add_near_corner(problem, corner, 0, first, count)
         if found == count:
-            found = _add_near_corner(problem, corner, 1, problem.near_start[group], count)
+            found = _add_near_corner(problem, corner, 1, first, count)
         count = found
+    for n in range(first, first + count):
+        problem.usable[problem.near[n]] -= LISTED
     return count
 
 
@@ -257,10 +260,8 @@ def _add_near_corner(problem: Problem, corner: int, margin: int, first: int, cou
             if not (0 <= i < lattice.columns and 0 <= j < lattice.rows):
                 continue
             node = j * lattice.columns + i
-            known = False
-            for k in range(first, first + count):
-                known |= near[k] == node
-            if not known and is_known_usable(node, problem):
+            if problem.usable[node] < LISTED and is_known_usable(node, problem):
+                problem.usable[node] += LISTED
                 near[first + count] = node
                 count += 1
     return count

@@ -84,6 +84,8 @@ class KBGASettings:
     rounds: int = 2
     one_operator: bool = False
     remembers: bool = False
+    taut: bool = False
+    over: Literal["room", "region"] = "room"
     generations_counted: Literal["best", "stop"] = "stop"
     max_generations: int = 500
     stagnation: int = 30

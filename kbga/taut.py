@@ -1,0 +1,226 @@
+"""A path pulled taut: as short as it gets without passing an obstacle on another side (ours).
+
+The lattice costs length wherever corners lie between its lines. A path that has been found is
+therefore pulled taut as a string: where it bends, the bend moves back until the string lies against
+corners of obstacles, or is straight. The triangle of a bend and its two neighbours holds all that
+can stop it: as the two sides are free, what juts into the triangle crosses the third side only, and
+has a vertex in it. The string then runs along the convex hull of these vertices and the neighbours.
+Repeated until nothing moves, this is the shortest path of its kind (homotopy class): the way that
+Hershberger and Snoeyink (1994) shorten paths, without a triangulation.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kbga.counter import COMPUTED, may_ask
+from kbga.encoding import distance
+from suite.geometry.kernels import (
+    FIRST,
+    LAST,
+    SKIP,
+    XMAX,
+    XMIN,
+    YMAX,
+    YMIN,
+    ObstacleArrays,
+    first_collision,
+    pinch_at,
+    segment_enters,
+    turn_is_closed,
+)
+from suite.geometry.predicates import orientation
+from suite.jit import kernel
+
+ROOM = 512
+"""Most nodes of a string. One that would need more stays as long as it is."""
+
+LEAST_GAIN = 1e-12
+"""Share of a bend's length below which a gain is rounding."""
+
+
+def pull_taut(
+    path: NDArray[np.float64], arrays: ObstacleArrays, counter: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Pull a feasible path taut.
+
+    Parameters
+    ----------
+    path : (n, 2) float64, metres
+        In free space.
+    arrays : ObstacleArrays
+    counter : (3,) int64
+        Of :mod:`kbga.counter`: each segment that is tried is a question. Where none is left, the
+        path stays as far as it came.
+
+    Returns
+    -------
+    (m, 2) float64, metres, in free space, no longer than ``path``.
+    """
+    string = np.empty((max(ROOM, 2 * len(path)), 2))
+    string[: len(path)] = path
+    pulled = string[: _pull(string, len(path), arrays, counter)].copy()
+    # What was judged bend by bend is judged as a whole, as the referee does.
+    return pulled if first_collision(pulled, arrays) < 0 else path
+
+
+def length_of_path(path: NDArray[np.float64]) -> float:
+    """Length of a path (n, 2), metres."""
+    return float(np.hypot(*np.diff(path, axis=0).T).sum())
+
+
+@kernel
+def _pull(string: np.ndarray, count: int, arrays: ObstacleArrays, counter: np.ndarray) -> int:
+    """Pull the first ``count`` places of a string taut, in place; how many there are then."""
+    k = 1
+    while k < count - 1:
+        new = _pull_bend(string, count, k, arrays, counter)
+        if new < 0:
+            k += 1
+            continue
+        count = new
+        k = max(1, k - 1)
+    return count
+
+
+@kernel
+def _pull_bend(
+    string: np.ndarray, count: int, k: int, arrays: ObstacleArrays, counter: np.ndarray
+) -> int:
+    """Pull the bend k of a string taut; how many places it has then, or -1 if nothing moved.
+
+    The new places are written behind the string, before they replace the bend.
+    """
+    ax, ay = string[k - 1, 0], string[k - 1, 1]
+    bx, by = string[k, 0], string[k, 1]
+    cx, cy = string[k + 1, 0], string[k + 1, 1]
+    side = orientation(ax, ay, cx, cy, bx, by)
+    x, y = ax, ay
+    added = 0
+    length = 0.0
+    while True:
+        nx, ny = _next_of_hull(x, y, ax, ay, bx, by, cx, cy, side, arrays)
+        if (nx == bx and ny == by) or not _is_free(x, y, nx, ny, arrays, counter):
+            return -1
+        length += distance(x, y, nx, ny)
+        if nx == cx and ny == cy:
+            break
+        if count + added >= string.shape[0]:
+            return -1
+        string[count + added, 0], string[count + added, 1] = nx, ny
+        added += 1
+        x, y = nx, ny
+    known = distance(ax, ay, bx, by) + distance(bx, by, cx, cy)
+    if length >= known * (1.0 - LEAST_GAIN) and added > 0:
+        return -1
+    if arrays.pinches.shape[0] > 0 and _slips(string, count, k, added, arrays):
+        return -1
+    _replace(string, count, k, added)
+    return count + added - 1
+
+
+@kernel
+def _is_free(
+    ax: float, ay: float, bx: float, by: float, arrays: ObstacleArrays, counter: np.ndarray
+) -> bool:
+    if not may_ask(counter):
+        return False
+    counter[COMPUTED] += 1
+    return not segment_enters(ax, ay, bx, by, arrays)
+
+
+@kernel
+def _next_of_hull(
+    x: float,
+    y: float,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    cx: float,
+    cy: float,
+    side: int,
+    arrays: ObstacleArrays,
+) -> tuple[float, float]:
+    """The place after (x, y) on the hull of a, c and all vertices in the triangle a, b, c.
+
+    Gift wrapping (Jarvis 1973), on b's side of a-c.
+    """
+    tree, vertices = arrays.tree, arrays.vertices
+    xmin, xmax = min(ax, bx, cx), max(ax, bx, cx)
+    ymin, ymax = min(ay, by, cy), max(ay, by, cy)
+    nx, ny = cx, cy
+    row = 0
+    while row < tree.shape[0] and side != 0:
+        if (
+            (xmin > tree[row, XMAX])
+            | (xmax < tree[row, XMIN])
+            | (ymin > tree[row, YMAX])
+            | (ymax < tree[row, YMIN])
+        ):
+            row = int(tree[row, SKIP])
+            continue
+        for v in range(int(tree[row, FIRST]), int(tree[row, LAST])):
+            px, py = vertices[v, 0], vertices[v, 1]
+            if (
+                xmin <= px <= xmax
+                and ymin <= py <= ymax
+                and not (px == x and py == y)
+                and orientation(x, y, nx, ny, px, py) == side
+                and orientation(ax, ay, cx, cy, px, py) == side
+                and orientation(ax, ay, bx, by, px, py) != side
+                and orientation(bx, by, cx, cy, px, py) != side
+            ):
+                nx, ny = px, py
+        row += 1
+    return nx, ny
+
+
+@kernel
+def _slips(string: np.ndarray, count: int, k: int, added: int, arrays: ObstacleArrays) -> bool:
+    """Whether a string with ``added`` places instead of bend k would slip through a pinch point."""
+    for number in range(-1, added + 1):  # the neighbours of the bend, and the new places
+        at = _place(count, k, added, number)
+        pinch = pinch_at(string[at, 0], string[at, 1], arrays.pinches)
+        if pinch < 0 or at == 0 or at == count - 1:
+            continue
+        before, after = _place(count, k, added, number - 1), _place(count, k, added, number + 1)
+        if turn_is_closed(
+            string[before, 0],
+            string[before, 1],
+            string[after, 0],
+            string[after, 1],
+            arrays.pinches,
+            arrays.ways,
+            pinch,
+        ):
+            return True
+    return False
+
+
+@kernel
+def _place(count: int, k: int, added: int, number: int) -> int:
+    """Where a place of the new string is: those before bend k have numbers below 0."""
+    if number < 0:
+        return k + number
+    return count + number if number < added else k + 1 + number - added
+
+
+@kernel
+def _replace(string: np.ndarray, count: int, k: int, added: int) -> None:
+    """Put the ``added`` places behind the string in the place of bend k."""
+    # The rest and the places behind it change places, by three reversals.
+    _reverse(string, k + 1, count)
+    _reverse(string, count, count + added)
+    _reverse(string, k + 1, count + added)
+    for i in range(k, count + added - 1):
+        string[i, 0], string[i, 1] = string[i + 1, 0], string[i + 1, 1]
+
+
+@kernel
+def _reverse(string: np.ndarray, first: int, last: int) -> None:
+    last -= 1
+    while first < last:
+        for j in range(2):
+            string[first, j], string[last, j] = string[last, j], string[first, j]
+        first += 1
+        last -= 1
