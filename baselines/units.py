@@ -1,11 +1,15 @@
-"""Rooms scaled into the unit square, for packages that have tolerances of their own.
+"""How large rooms are, and rooms scaled into the unit square.
 
-The unit is a power of two, so that scaling changes exponents only: nothing is rounded.
+Packages have tolerances of their own, so that they need scaling. The unit is a power of two, so
+that scaling changes exponents only: nothing is rounded.
 """
 
 import math
 
-from suite.scenes.scene import Scene
+import numpy as np
+import shapely
+
+from suite.scenes.scene import Query, Scene
 
 
 def unit_of(scene: Scene) -> float:
@@ -25,6 +29,42 @@ def unit_of(scene: Scene) -> float:
 def longer_side(scene: Scene) -> float:
     """Of the box around the room, metres."""
     xmin, ymin, xmax, ymax = scene.bounds
+    return float(max(xmax - xmin, ymax - ymin))
+
+
+def free_side(scene: Scene, query: Query) -> float:
+    """Of the box around the part of free space that a query lies in, metres.
+
+    Most of a map that a robot has drawn is unknown: a room of 19 m may be free on 5 m. The faces of
+    the arrangement stand for the parts: they are there before any clock starts, and asking which
+    ones a query touches takes some 0.1 ms (``scene.regions`` takes up to 6 ms on the same maps).
+    Only where a sliver was rounded away are two faces one part. Where a query touches none, it is
+    the side of the room.
+
+    Parameters
+    ----------
+    scene : Scene
+    query : Query
+        Its ends are in free space, or on the border of it.
+
+    Returns
+    -------
+    float, metres
+
+    Examples
+    --------
+    >>> from suite.scenes.scene import make_scene
+    >>> wall = shapely.box(4, 0, 5, 9)
+    >>> room = make_scene("room", shapely.box(0, 0, 30, 9), [wall], {})
+    >>> free_side(room, room.query("1,1:2,8")), free_side(room, room.query("6,1:9,9"))
+    (9.0, 25.0)
+    """
+    faces = np.array(scene.arrangement.free, dtype=np.object_)
+    ends = shapely.multipoints(np.array([query.start, query.goal]))
+    touched = faces[shapely.dwithin(faces, ends, scene.coordinates.grid)]
+    if not len(touched):
+        return longer_side(scene)
+    xmin, ymin, xmax, ymax = shapely.total_bounds(touched)
     return float(max(xmax - xmin, ymax - ymin))
 
 

@@ -8,6 +8,7 @@ import time
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
@@ -23,7 +24,7 @@ from baselines.ompl.callbacks import way_s
 from baselines.ompl.collision import ExactCollision, state_checker
 from baselines.ompl.settings import OmplSettings, apply
 from baselines.ompl.units import metres, tables_in
-from baselines.units import unit_of
+from baselines.units import free_side, unit_of
 from baselines.visibility_graph import tiny_scene
 from suite.geometry.kernels import first_collision
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
@@ -116,10 +117,10 @@ class OmplPlanner(Planner[SettingsT]):
             details=details,
         )
 
-    def _build(self, information: Any, unit: float) -> Any:
+    def _build(self, problem: "Problem") -> Any:
         """Build OMPL's planner and hand it the settings that are not None."""
-        planner = type(self).ompl_class(information)
-        apply(self.settings, planner, unit)
+        planner = type(self).ompl_class(problem.information)
+        apply(self.settings, planner, problem)
         return planner
 
     def _iterations(self, problem: "Problem") -> int | None:  # noqa: ARG002
@@ -153,13 +154,13 @@ class Problem:
         self,
         scene: Scene,
         query: Query,
-        build: Callable[[Any, float], Any],
+        build: Callable[["Problem"], Any],
         budget: Budget,
         recorder: Recorder,
     ) -> None:
         self.query = query
         self.unit = unit_of(scene)
-        self._arrays = scene.arrays
+        self._scene = scene
         self._wall_s = np.inf if budget.wall_s is None else budget.wall_s
         self._clock = recorder.wall_s
         self._time_is_over = time_is_over(budget, recorder)
@@ -184,6 +185,11 @@ class Problem:
         state[0], state[1] = (float(x) / self.unit for x in point)
         return state
 
+    @cached_property
+    def side(self) -> float:
+        """Of the box around the part of free space that the query lies in, metres."""
+        return free_side(self._scene, self.query)
+
     @property
     def straight_line(self) -> NDArray[np.float64]:
         """The segment from start to goal as a path, metres."""
@@ -195,7 +201,7 @@ class Problem:
 
     def renew_planner(self) -> None:
         """Build the planner anew: some of OMPL's can't be used twice."""
-        self.planner = self._build(self.information, self.unit)
+        self.planner = self._build(self)
         self._setup.setPlanner(self.planner)
 
     def be_satisfied_with(self, length: float) -> None:
@@ -252,7 +258,7 @@ class Problem:
         if not np.allclose(path[[0, -1]], ends, rtol=0.0, atol=SAME_POINT * self.unit):
             return None
         path[[0, -1]] = ends
-        return path if first_collision(path, self._arrays) < 0 else None
+        return path if first_collision(path, self._scene.arrays) < 0 else None
 
 
 def _bounds(scene: Scene, unit: float) -> Any:

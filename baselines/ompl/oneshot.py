@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ompl import geometric as og
 
 from baselines.ompl.adapter import OmplPlanner, Problem, SettingsT
-from baselines.ompl.settings import A_SHARE, ABOVE_0, AT_LEAST_1, OmplSettings, bound, ours
+from baselines.ompl.settings import A_SHARE, AT_LEAST_1, OmplSettings, RangeSettings, bound, ours
 from baselines.ompl.simplification import simplify
 from suite.planner import Abilities, Recorder
 from suite.scenes.exact import path_length
@@ -30,8 +30,8 @@ class OneShotPlanner(OmplPlanner[SettingsT]):
 
 
 @dataclass(frozen=True, slots=True)
-class SimplifiedSettings(OmplSettings):
-    """Settings of any planner whose path OMPL simplifies.
+class SimplifiedSettings(RangeSettings):
+    """Settings of any planner whose path OMPL simplifies: its range, and whether it does.
 
     simplify : spend what is left of the budget, or as much as it takes, on OMPL's simplifier. The
         path before it is reported as the first improvement.
@@ -59,13 +59,11 @@ class SimplifiedPlanner(OneShotPlanner[SimplifiedSettings]):
 
 @dataclass(frozen=True, slots=True)
 class RRTConnectSettings(SimplifiedSettings):
-    """Settings of RRT-Connect; None leaves OMPL's default.
+    """Settings of RRT-Connect: those of :class:`SimplifiedSettings`, and what joins the tree.
 
-    range : longest edge that extends a tree, metres.
     intermediate_states : add the states along an edge to the tree, too.
     """
 
-    range: float | None = bound("setRange", ABOVE_0, is_length=True)
     intermediate_states: bool | None = bound("setIntermediateStates")
 
 

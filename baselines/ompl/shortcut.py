@@ -13,7 +13,15 @@ from numpy.typing import NDArray
 from ompl import geometric as og
 
 from baselines.ompl.adapter import OmplPlanner, Problem
-from baselines.ompl.settings import A_SHARE, ABOVE_0, AT_LEAST_1, OmplSettings, bound, ours
+from baselines.ompl.settings import (
+    A_SHARE,
+    ABOVE_0,
+    AT_LEAST_1,
+    Lengths,
+    RangeSettings,
+    ours,
+    share_of_side,
+)
 from baselines.ompl.simplification import BudgetSpentError, ended_by_exception
 from baselines.ompl.watched import STRAIGHT
 from suite.planner import Recorder
@@ -27,10 +35,11 @@ ROPE_TOLERANCE = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class ShortcutSettings(OmplSettings):
-    """Settings of RRT-Connect with shortcuts and restarts; but for ``range``, the choices are ours.
+class ShortcutSettings(RangeSettings):
+    """Settings of RRT-Connect with shortcuts and restarts.
 
-    range : longest edge that extends a tree of RRT-Connect, metres; None leaves OMPL's default.
+    Those of :class:`RangeSettings` are RRT-Connect's; the choices of all others are ours.
+
     reach : share of the path that a shortcut of a cycle's first round leaves out at most.
     narrowing : factor on the reach from round to round.
     rounds : rounds of random shortcuts in a cycle, each followed by dropping vertices.
@@ -38,17 +47,19 @@ class ShortcutSettings(OmplSettings):
     empty_steps : the same without a success, after which a round ends.
     rope : distance of the points between which OMPL's rope shortcut looks for straight lines, once
         after the first cycle, metres; None for no such step.
+    rope_share : the same as a share of the side of free space, as ``range_share`` is; in place of
+        ``rope``.
     gain : share by which a cycle must shorten a path to be followed by another one.
     hopeless : a path that is longer than the best one by this factor after its first cycle is left.
     """
 
-    range: float | None = bound("setRange", ABOVE_0, is_length=True)
     reach: float = ours(0.33, ABOVE_0)
     narrowing: float = ours(0.4, ABOVE_0)
     rounds: int = ours(3, AT_LEAST_1)
     steps: int = ours(400, AT_LEAST_1)
     empty_steps: int = ours(100, AT_LEAST_1)
     rope: float | None = ours(None, ABOVE_0)
+    rope_share: float | None = share_of_side("rope")
     gain: float = ours(0.001, A_SHARE)
     hopeless: float = ours(1.05, AT_LEAST_1)
 
@@ -112,12 +123,21 @@ class _Best:
             self._recorder.improved(self.length, checks=collision.checks)
 
 
+def _rope(settings: ShortcutSettings, lengths: Lengths) -> float | None:
+    """Distance of the points of the rope shortcut in OMPL's coordinates; None for no such step."""
+    rope = settings.rope
+    if settings.rope_share is not None:
+        rope = settings.rope_share * lengths.side
+    return None if rope is None else rope / lengths.unit
+
+
 class _Shortening:
     """Cycles of shortcuts on one path of RRT-Connect's."""
 
     def __init__(self, problem: Problem, settings: ShortcutSettings, best: _Best) -> None:
         self._settings = settings
         self._unit = problem.unit
+        self._rope = _rope(settings, problem)
         self._best = best
         self._solution = problem.definition.getSolutionPath()
         self._simplifier = og.PathSimplifier(problem.information)
@@ -132,9 +152,8 @@ class _Shortening:
             self._cycle()
             if is_first and solution.length() * self._unit > settings.hopeless * self._best.length:
                 return
-            if is_first and settings.rope is not None:
-                delta = settings.rope / self._unit
-                self._simplifier.ropeShortcutPath(solution, delta, ROPE_TOLERANCE * delta)
+            if is_first and self._rope is not None:
+                self._simplifier.ropeShortcutPath(solution, self._rope, ROPE_TOLERANCE * self._rope)
                 self._best.offer(solution)
 
     def _cycle(self) -> None:

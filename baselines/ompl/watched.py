@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ompl import geometric as og
 
 from baselines.ompl.adapter import OmplPlanner, Problem
-from baselines.ompl.settings import A_SHARE, ABOVE_0, AT_LEAST_1, OmplSettings, bound
+from baselines.ompl.settings import A_SHARE, AT_LEAST_1, OmplSettings, RangeSettings, bound
 from suite.planner import Recorder
 from suite.scenes.exact import path_length
 
@@ -81,10 +81,9 @@ class WatchedPlanner(OmplPlanner):
 
 
 @dataclass(frozen=True, slots=True)
-class TreeSettings(OmplSettings):
-    """Settings of the whole RRT* family; None leaves OMPL's default.
+class TreeSettings(RangeSettings):
+    """Settings of the whole RRT* family: those of :class:`RangeSettings`, and how it rewires.
 
-    range : longest edge that extends the tree, metres.
     goal_bias : share of samples that are the goal itself.
     rewire_factor : how many neighbours are rewired, relative to what optimality needs.
     k_nearest : rewire the k nearest neighbours, instead of all within a radius.
@@ -94,7 +93,6 @@ class TreeSettings(OmplSettings):
     new_state_rejection : reject new states that can't be part of a better path.
     """
 
-    range: float | None = bound("setRange", ABOVE_0, is_length=True)
     goal_bias: float | None = bound("setGoalBias", A_SHARE)
     rewire_factor: float | None = bound("setRewireFactor", AT_LEAST_1)
     k_nearest: bool | None = bound("setKNearest")
@@ -170,16 +168,6 @@ class BITstarSettings(OmplSettings):
     drop_samples_on_prune: bool | None = bound("setDropSamplesOnPrune")
 
 
-@dataclass(frozen=True, slots=True)
-class AORRTCSettings(OmplSettings):
-    """Settings of AORRTC; None leaves OMPL's default.
-
-    range : longest edge that extends a tree, metres.
-    """
-
-    range: float | None = bound("setRange", ABOVE_0, is_length=True)
-
-
 class RRTstarPlanner(WatchedPlanner):
     """RRT* (Karaman and Frazzoli 2011): a tree that is rewired as it grows."""
 
@@ -223,7 +211,7 @@ class AORRTCPlanner(WatchedPlanner):
     """
 
     name: ClassVar[str] = "ompl-aorrtc"
-    Settings: ClassVar[type[Any]] = AORRTCSettings
+    Settings: ClassVar[type[Any]] = RangeSettings
     ompl_class: ClassVar[Callable[[Any], Any]] = og.AORRTC
     checks_between_looks: ClassVar[int | None] = LAZY
 

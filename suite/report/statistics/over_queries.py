@@ -15,6 +15,9 @@ from suite.report.statistics.clock import by_the_clock
 TARGETS = (0.05, 0.02, 0.01)
 """Gaps to the optimum that a time is told for."""
 
+EQUAL = 1e-6
+"""Gaps that differ by less, as a share of the optimum, are equal."""
+
 HARDEST = 8
 """Queries that are drawn on a map: lines of more can't be told apart."""
 

@@ -15,13 +15,17 @@ from suite.report.rows import is_blocked
 from suite.report.statistics.anytime import Steps
 from suite.report.statistics.clock import untimed_note
 from suite.report.statistics.inference import LEVEL, Array, Interval, bootstrap, holm, signed_rank
-from suite.report.statistics.over_queries import TARGETS, only_maps, query_measures, time_to
+from suite.report.statistics.over_queries import (
+    EQUAL,
+    TARGETS,
+    only_maps,
+    query_measures,
+    time_to,
+)
 from suite.report.table import INFINITE, Kind, Table
+from suite.report.tables.map_settings import settings_tables
 from suite.report.tables.statistics import REFERENCE
 from suite.report.words import joined
-
-EQUAL = 1e-6
-"""Gaps that differ by less, as a share of the optimum, are equal."""
 
 NARROW = [
     "scene", "planner", "solved", "blocked", "gap median (%)", "gap mean (%)", "low (%)",
@@ -92,7 +96,7 @@ def map_tables(
     title = "All measures of each planner over the queries of a map"
     told = f"{note} {ROWS_NOTE}"
     rows = replace(maps, name="maps-rows", title=title, frame=frame, note=told, detail=True)
-    tables = [maps, rows]
+    tables = [maps, rows, *settings_tables(measures, shown.runs)]
     names = list(dict.fromkeys(measures["variant"]))
     if len(names) > 1:
         one = reference or (REFERENCE if REFERENCE in names else names[0])

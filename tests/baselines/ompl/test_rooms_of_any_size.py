@@ -12,10 +12,11 @@ from hypothesis import strategies as st
 
 from baselines.ompl.oneshot import FMTPlanner, RRTConnectPlanner, RRTConnectSettings
 from baselines.ompl.roadmap import PRMstarPlanner
+from baselines.ompl.settings import RangeSettings
+from baselines.ompl.shortcut import ShortcutPlanner, ShortcutSettings
 from baselines.ompl.units import tables_in
 from baselines.ompl.watched import (
     AORRTCPlanner,
-    AORRTCSettings,
     BITstarPlanner,
     RRTstarPlanner,
     RRTstarSettings,
@@ -61,7 +62,7 @@ def test_a_room_twice_as_large_again_and_again_has_the_same_path(planner, factor
     ("near", "far"),
     [
         (RRTstarPlanner(RRTstarSettings(range=5.0)), RRTstarPlanner(RRTstarSettings(range=40.0))),
-        (AORRTCPlanner(AORRTCSettings(range=5.0)), AORRTCPlanner(AORRTCSettings(range=40.0))),
+        (AORRTCPlanner(RangeSettings(range=5.0)), AORRTCPlanner(RangeSettings(range=40.0))),
         (
             RRTConnectPlanner(RRTConnectSettings(range=5.0)),
             RRTConnectPlanner(RRTConnectSettings(range=40.0)),
@@ -75,6 +76,22 @@ def test_a_range_is_in_metres(near, far):
     large = run(far, resized(scene, 8.0), Budget(checks=3000))
     assert (small.path * 8.0).tobytes() == large.path.tobytes()
     assert run(far, scene, Budget(checks=3000)).path.tobytes() != small.path.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("metres", "share"),
+    [
+        (RRTstarPlanner(RRTstarSettings(range=5.0)), RRTstarSettings(range_share=0.05)),
+        (ShortcutPlanner(ShortcutSettings(rope=2.0)), ShortcutSettings(rope_share=0.02)),
+    ],
+    ids=lambda p: getattr(p, "name", "share"),
+)
+def test_a_share_is_the_same_in_rooms_of_all_sizes(metres, share):
+    scene = load_scene("obstacles_20")  # 100 m, of which all sides are free
+    small = run(metres, scene, Budget(checks=3000))
+    large = run(type(metres)(share), resized(scene, 8.0), Budget(checks=3000))
+    assert (small.path * 8.0).tobytes() == large.path.tobytes()
+    assert run(type(metres)(), scene, Budget(checks=3000)).path.tobytes() != small.path.tobytes()
 
 
 @given(

@@ -1,7 +1,9 @@
 import dataclasses
 
 import pytest
+import shapely
 
+from baselines.ompl.adapter import Problem
 from baselines.ompl.oneshot import (
     BFMTPlanner,
     BFMTSettings,
@@ -13,10 +15,10 @@ from baselines.ompl.oneshot import (
     RRTSettings,
 )
 from baselines.ompl.roadmap import PRMPlanner, PRMSettings, PRMstarPlanner, PRMstarSettings
+from baselines.ompl.settings import RangeSettings
 from baselines.ompl.shortcut import ShortcutPlanner, ShortcutSettings
 from baselines.ompl.watched import (
     AORRTCPlanner,
-    AORRTCSettings,
     BITstarPlanner,
     BITstarSettings,
     InformedRRTstarPlanner,
@@ -26,8 +28,8 @@ from baselines.ompl.watched import (
     SORRTstarPlanner,
     SORRTstarSettings,
 )
-from suite.planner import Budget
-from tests.baselines.ompl.laboratory import SCENES, run
+from suite.planner import Budget, Recorder
+from tests.baselines.ompl.laboratory import SCENES, run, scene_of
 
 TREE = {
     "range": 3.0, "goal_bias": 0.2, "rewire_factor": 1.2, "k_nearest": False, "delay_cc": False,
@@ -55,7 +57,7 @@ EVERY_SETTING = (
         pruning=True, prune_threshold=0.02, delay_rewiring=True, just_in_time_sampling=True,
         drop_samples_on_prune=True,
     )),
-    AORRTCPlanner(AORRTCSettings(range=2.0)),
+    AORRTCPlanner(RangeSettings(range=2.0)),
     RRTPlanner(RRTSettings(range=2.0, intermediate_states=True, goal_bias=0.2, simplify=False)),
     RRTConnectPlanner(RRTConnectSettings(range=2.0, intermediate_states=True, simplify=False)),
     FMTPlanner(FMTSettings(**MARCHING)),
@@ -76,7 +78,7 @@ def test_every_setting_reaches_ompl(planner):
     left = [
         field.name
         for field in dataclasses.fields(planner.settings)
-        if getattr(planner.settings, field.name) is None
+        if getattr(planner.settings, field.name) is None and "instead_of" not in field.metadata
     ]
     assert left == []
     assert run(planner, SCENES["one box"], Budget(checks=3000)).path is not None
@@ -103,6 +105,37 @@ def test_the_number_of_samples_is_a_setting(planner):
     assert seen[1].claimed_cost < seen[0].claimed_cost
 
 
+WITH_A_RANGE = (
+    RRTstarPlanner, InformedRRTstarPlanner, SORRTstarPlanner, AORRTCPlanner, RRTPlanner,
+    RRTConnectPlanner, ShortcutPlanner,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("planner", WITH_A_RANGE, ids=lambda p: p.name)
+def test_a_share_of_the_side_of_free_space_is_the_range_that_ompl_reports(planner):
+    wall = shapely.box(20, 0, 30, 40)
+    scene = scene_of([wall], (1, 5), (9, 5), room=shapely.box(0, 0, 100, 40))
+    for query, side in (("1,5:9,5", 40.0), ("31,5:99,5", 70.0)):
+        problem = problem_of(planner(planner.Settings(range_share=0.1)), scene, scene.query(query))
+        assert problem.planner.getRange() * problem.unit == pytest.approx(0.1 * side, rel=1e-12)
+
+
+def problem_of(planner, scene, query):
+    """What a run sets up, before it runs."""
+    problem = Problem(scene, query, planner._build, Budget(checks=10), Recorder())
+    problem.set_up()
+    return problem
+
+
+@pytest.mark.parametrize(("settings", "metres", "share"), [
+    *((planner.Settings, "range", "range_share") for planner in WITH_A_RANGE),
+    (ShortcutSettings, "rope", "rope_share"),
+])  # fmt: skip
+def test_a_length_in_metres_and_as_a_share_is_refused(settings, metres, share):
+    with pytest.raises(ValueError, match=f"^{metres} is 2.0 and {share} is 0.1: .*not both"):
+        settings(**{metres: 2.0, share: 0.1})
+
+
 def test_a_short_range_makes_many_waypoints():
     near = RRTstarPlanner(RRTstarSettings(range=0.5))
     assert len(run(near, SCENES["one box"], Budget(checks=10_000)).path) >= 16
@@ -110,6 +143,8 @@ def test_a_short_range_makes_many_waypoints():
 
 @pytest.mark.parametrize(("settings", "wrong"), [
     (RRTstarSettings, {"range": 0.0}),
+    (RRTstarSettings, {"range_share": 0.0}),
+    (RRTstarSettings, {"range_share": 10.0}),
     (RRTstarSettings, {"goal_bias": 1.5}),
     (RRTstarSettings, {"rewire_factor": 0.5}),
     (RRTstarSettings, {"batch_size": 0}),
@@ -119,7 +154,7 @@ def test_a_short_range_makes_many_waypoints():
     (SORRTstarSettings, {"batch_size": 0}),
     (BITstarSettings, {"samples_per_batch": 0}),
     (BITstarSettings, {"prune_threshold": 2.0}),
-    (AORRTCSettings, {"range": -1.0}),
+    (RangeSettings, {"range": -1.0}),
     (RRTConnectSettings, {"range": 0.0}),
     (RRTSettings, {"goal_bias": -0.1}),
     (FMTSettings, {"num_samples": 0}),
@@ -133,6 +168,7 @@ def test_a_short_range_makes_many_waypoints():
     (ShortcutSettings, {"steps": 0}),
     (ShortcutSettings, {"empty_steps": 0}),
     (ShortcutSettings, {"rope": 0.0}),
+    (ShortcutSettings, {"rope_share": 2.0}),
     (ShortcutSettings, {"gain": 2.0}),
     (ShortcutSettings, {"hopeless": 0.9}),
     (PRMstarSettings, {"slice_s": 0}),

@@ -118,7 +118,7 @@ def test_query_by_query_there_are_files_and_nothing_on_the_page():
 def test_scenes_of_few_queries_are_no_maps():
     runs, events = frames_of(*town(costs=COSTS[:3]), measured("kbga", 0, [(1.0, 101.0)]))
     names = {table.name for table in all_tables(runs, events=events)}
-    assert names.isdisjoint({"maps", "maps-rows", "maps-paired", "queries"})
+    assert names.isdisjoint({"maps", "maps-rows", "maps-paired", "maps-settings", "queries"})
 
 
 def test_tests_over_runs_leave_maps_out_and_say_so():
