@@ -15,9 +15,16 @@ from suite.report.rows import is_blocked
 from suite.report.statistics.anytime import Steps
 from suite.report.statistics.clock import untimed_note
 from suite.report.statistics.inference import LEVEL, Array, Interval, bootstrap, holm, signed_rank
-from suite.report.statistics.over_queries import TARGETS, only_maps, query_measures, time_to
+from suite.report.statistics.over_queries import (
+    TARGETS,
+    only_maps,
+    quantile,
+    query_measures,
+    time_to,
+)
 from suite.report.table import INFINITE, Kind, Table
 from suite.report.tables.statistics import REFERENCE
+from suite.report.tables.strata import strata_table
 from suite.report.words import joined
 
 EQUAL = 1e-6
@@ -104,11 +111,12 @@ def map_tables(
         "maps-lengths", "Maps: short and long queries apart", by_length(measures), LENGTHS_NOTE,
         "never", detail=True, infinite_in=dict.fromkeys(_GAPS, INFINITE),
     )  # fmt: skip
+    strata = strata_table(shown, measures)
     by_query = Table(
         "queries", "Each planner on each query of the maps", _by_query(measures), QUERY_NOTE,
         "never", detail=True, on_page=False,
     )  # fmt: skip
-    return [*tables, lengths, by_query]
+    return [*tables, lengths, *([] if strata is None else [strata]), by_query]
 
 
 QUANTILES = {"gap 90th (%)": 0.9, "gap 99th (%)": 0.99, "gap worst (%)": 1.0}
@@ -169,7 +177,7 @@ def _row(group: pd.DataFrame, blocked: int, rng: np.random.Generator) -> dict[st
         "gap mean (%)": mean.estimate,
         "low (%)": mean.low,
         "high (%)": mean.high,
-        **{name: _quantile(gap, share) for name, share in QUANTILES.items()},
+        **{name: quantile(gap, share) for name, share in QUANTILES.items()},
         **_times(group),
         "clearance (m)": float(group["clearance"].mean()),
         "turning (rad)": float(group["turning"].mean()),
@@ -180,11 +188,6 @@ def _interval(gap: Array, statistic: Callable[..., Any], rng: np.random.Generato
     if not len(gap):
         return Interval(np.nan, np.nan, np.nan)
     return bootstrap(gap[:, None], lambda scores: np.asarray(statistic(scores, axis=-1)), rng)
-
-
-def _quantile(gap: Array, share: float) -> float:
-    """The least gap that such a share of the queries does not exceed: one of theirs."""
-    return float(np.quantile(gap, share, method="inverted_cdf")) if len(gap) else np.nan
 
 
 def _times(group: pd.DataFrame) -> dict[str, float]:
