@@ -11,8 +11,10 @@ import numpy as np
 import pandas as pd
 
 from suite.report.statistics.anytime import Steps
+from suite.report.statistics.clock import by_the_clock, untimed_note
 from suite.report.statistics.over_queries import QUERY, quantile, time_to
 from suite.report.table import INFINITE, Table
+from suite.report.words import joined
 
 STRATUM = "stratum"
 """The column of rows that says of which stratum a query is; None of a query of none."""
@@ -25,13 +27,15 @@ NEAR = 0.02
 
 GAPS = {"gap median (%)": 0.5, "gap 95th (%)": 0.95, "gap worst (%)": 1.0}
 
+TO_BEST = {"to best (ms)": "time_to_best_s", "cpu to best (ms)": "cpu_to_best_s"}
+
 NOTE = (
     "A row for each map, stratum of its queries and planner. A query's seeds are averaged first; "
     "solved: how many of the queries were solved in every run. gap: over the queries with a path: "
     "95th is the gap that so many in a hundred of them do not exceed. optimum: median length of "
     "the shortest paths. to 2 %: median over the queries of the wall time to come within that of "
     "the optimum; to best: of the time until the path was found that was returned, where there is "
-    "one. Queries of no stratum are not here."
+    "one; cpu: the same of the processor. Queries of no stratum are not here."
 )
 
 
@@ -50,11 +54,13 @@ def strata_table(steps: Steps, measures: pd.DataFrame) -> Table | None:
         return None
     of_query = runs.dropna(subset=[STRATUM]).drop_duplicates(["place", "query"])
     named = of_query.set_index(["place", "query"])[STRATUM]
-    best = runs.groupby(QUERY, sort=False)["time_to_best_s"].median()
+    timed = runs.assign(time_to_best_s=runs["time_to_best_s"].where(by_the_clock(runs)))
+    best = timed.groupby(QUERY, sort=False)[list(TO_BEST.values())].median()
     known = measures.join(named, on=["place", "query"]).join(best, on=QUERY)
     frame = by_stratum(known[known[STRATUM].notna()])
     return Table(
-        "maps-strata", "Maps: the strata of their queries apart", frame, NOTE, "never",
+        "maps-strata", "Maps: the strata of their queries apart", frame,
+        joined(NOTE, untimed_note(runs)), "never",
         detail=True, infinite_in=dict.fromkeys(GAPS, INFINITE),
         on_page=len(frame) <= MOST_ON_PAGE,
     )  # fmt: skip
@@ -94,7 +100,7 @@ def _row(group: pd.DataFrame) -> dict[str, Any]:
         "optimum (m)": float(group["optimum"].median()),
         **{name: quantile(gap, share) for name, share in GAPS.items()},
         time_to(NEAR).replace("(s)", "(ms)"): 1e3 * float(with_optimum[time_to(NEAR)].median()),
-        "to best (ms)": 1e3 * float(group["time_to_best_s"].median()),
+        **{name: 1e3 * float(group[column].median()) for name, column in TO_BEST.items()},
     }
 
 

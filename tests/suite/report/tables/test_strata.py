@@ -68,6 +68,14 @@ def test_times_are_medians_over_the_queries():
     assert hard["to best (ms)"] == pytest.approx(2.0)
 
 
+def test_runs_without_a_core_of_their_own_have_cpu_time_alone_and_are_counted():
+    table = table_of(town(contended=True), STRATA)
+    assert table.frame[["to best (ms)", "to 2 % (ms)"]].isna().all(axis=None)
+    assert "Times leave out 6 of 6 runs" in table.note
+    apart = table_of(town(), STRATA).frame["cpu to best (ms)"]
+    assert table.frame["cpu to best (ms)"].equals(apart)
+
+
 def test_a_query_weighs_the_same_however_many_seeds_it_had():
     more = [asked("kbga", "q3", 109.0, seed) for seed in range(1, 9)]
     assert table_of([*town(), *more], STRATA).frame.equals(table_of(town(), STRATA).frame)
