@@ -1,5 +1,6 @@
 """The scenes and maps that were run on: how large they are, and what comes before any clock."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
@@ -27,9 +28,9 @@ def scenes_table(runs: pd.DataFrame, sizes: pd.DataFrame) -> Table | None:
         As :func:`suite.store.scenes.sizes_of_scenes` gives it.
     """
     asked = runs[~is_blocked(runs)]
-    sized = sizes.drop_duplicates("scene", keep="last").set_index("scene")
+    sized = {row["scene"]: row for row in sizes.to_dict("records")}
     rows = [
-        {"scene": scene} | _size(sized, str(scene)) | _costs(group)
+        {"scene": scene} | _size(sized, scene) | _costs(group)
         for scene, group in asked.groupby("scene", sort=False)
     ]
     frame = pd.DataFrame(rows)
@@ -41,10 +42,10 @@ def scenes_table(runs: pd.DataFrame, sizes: pd.DataFrame) -> Table | None:
     return Table("scenes", title, frame, joined(NOTE, left_out))
 
 
-def _size(sized: pd.DataFrame, scene: str) -> dict[str, Any]:
-    if scene not in sized.index:
+def _size(sized: Mapping[Any, Mapping[Any, Any]], scene: object) -> dict[str, Any]:
+    row = sized.get(scene)
+    if row is None:
         return {"vertices": pd.NA, "obstacles": pd.NA, "free (%)": float("nan")}
-    row = sized.loc[scene]
     return {
         "vertices": int(row["vertices"]),
         "obstacles": int(row["obstacles"]),
