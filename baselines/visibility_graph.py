@@ -1,7 +1,7 @@
 """The visibility search as a planner: exact, in the same tables as the planners it measures.
 
-Not the solver of the optima (suite.scenes.exact), which walks a navigation mesh: that one asks no
-question about segments, so it has no place on a clock of checks.
+Not the solver of the optima (suite.scenes.exact), which walks a navigation mesh, and is the planner
+``polyanya``: that one asks no question about segments, so it has no place on a clock of checks.
 """
 
 from functools import cache

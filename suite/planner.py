@@ -132,6 +132,9 @@ class Plan:
     computed_checks: int | None = None
     """Those checks that were computed; the others were answered from memory. None for a planner
     that remembers none: all of them."""
+    reason: str | None = None
+    """Why there is no path, in a sentence that is kept with the row; None with a path, or if the
+    planner can't tell."""
 
 
 @dataclass(frozen=True, slots=True)

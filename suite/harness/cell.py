@@ -138,6 +138,7 @@ def _with_plan(record: RunRecord, plan: Plan) -> RunRecord:
     return replace(
         record,
         status=plan.status,
+        reason=plan.reason,
         claimed_cost=plan.claimed_cost,
         generations=plan.generations,
         generation_of_best=generation_of_best,

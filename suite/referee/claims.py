@@ -43,7 +43,18 @@ def plain_plan(returned: Any) -> Plan:
         checks,
         _as_details(returned.details),
         computed_checks,
+        _as_reason(returned),
     )
+
+
+def _as_reason(returned: Plan) -> str | None:
+    """Why there is no path; with a path there is nothing to explain."""
+    reason = returned.reason
+    if reason is not None and not isinstance(reason, str):
+        raise ContractError(
+            f"the reason of the plan is a {type(reason).__name__}. It must be a sentence, or None."
+        )
+    return None if returned.status == PlanStatus.SOLVED else reason
 
 
 def _as_details(details: Any) -> dict[str, float]:

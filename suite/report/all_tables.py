@@ -21,8 +21,10 @@ from suite.report.tables.budgets import budget_tables
 from suite.report.tables.differences import difference_tables
 from suite.report.tables.queries import map_tables
 from suite.report.tables.ranking import ranking_tables
+from suite.report.tables.scenes import scenes_table
 from suite.report.tables.simulated import simulated_tables
 from suite.report.tables.statistics import check_reference, statistics_tables
+from suite.report.tables.strata import STRATUM
 from suite.report.tables.studies import study_tables
 from suite.report.tables.summary import summary_tables
 from suite.report.tables.targets import target_tables
@@ -34,6 +36,7 @@ from suite.store.read import (
     read_runs,
     read_simulations,
 )
+from suite.store.scenes import ends_of_rows, sizes_of_scenes
 
 BOOTSTRAP_SEED = 2004
 """Any will do; the same rows give the same intervals."""
@@ -51,6 +54,7 @@ def all_tables(
     *,
     simulations: pd.DataFrame | None = None,
     replans: pd.DataFrame | None = None,
+    sizes: pd.DataFrame | None = None,
     reference: str | None = None,
 ) -> list[Table]:
     """The summary, the studies, how the planners compare, and the paper's comparisons.
@@ -60,7 +64,8 @@ def all_tables(
     Parameters
     ----------
     runs : DataFrame
-        As :func:`suite.store.read.read_runs` gives it.
+        As :func:`suite.store.read.read_runs` gives it. A further column ``stratum``, as
+        :func:`suite.store.scenes.ends_of_rows` gives it, brings a table of strata.
     first : DataFrame, optional
         As :func:`suite.store.read.read_first_measures` gives it.
     events : DataFrame, optional
@@ -69,6 +74,9 @@ def all_tables(
     simulations, replans : DataFrame, optional
         As :func:`suite.store.read.read_simulations` and :func:`suite.store.read.read_replans` give
         them. Without them there are no tables of simulated runs.
+    sizes : DataFrame, optional
+        As :func:`suite.store.scenes.sizes_of_scenes` gives it. Without it there is no table of
+        scenes.
     reference : str, optional
         The planner that the statistics compare the others with; default: kbga, or else the first.
 
@@ -96,8 +104,10 @@ def all_tables(
         moving = simulated_tables(driven, simulations, replans)
     answers = verdict_table(Rows(kept, driven, _or_empty(first), _or_empty(replans)))
     told = [table for table in (answers, contrast_table(kept)) if table is not None]
+    prepared = None if sizes is None else scenes_table(current, sizes)
+    scenes = [] if prepared is None else [prepared]
     if kept.empty and moving:
-        return _paper_last([*moving, *told], untold)
+        return _paper_last([*moving, *scenes, *told], untold)
     steps = None if events is None else steps_of(kept, events)
     measured = [] if steps is None else measured_tables(steps, reference)
     rng = np.random.default_rng(BOOTSTRAP_SEED)
@@ -106,6 +116,7 @@ def all_tables(
         [
             *summary_tables(kept, left_out),
             *maps,
+            *scenes,
             *aligned,
             *moving,
             *study_tables(kept, first),
@@ -143,12 +154,14 @@ def read_tables(
     KbgaBenchError
         If no run is of the reference.
     """
+    rows = read_runs(store) if runs is None else runs
     return all_tables(
-        read_runs(store) if runs is None else runs,
+        rows.assign(**{STRATUM: ends_of_rows(store, rows)["stratum"]}),
         read_first_measures(store),
         read_events(store) if events is None else events,
         simulations=read_simulations(store),
         replans=read_replans(store),
+        sizes=sizes_of_scenes(store, newest(rows)),
         reference=reference,
     )
 

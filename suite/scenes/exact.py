@@ -79,6 +79,24 @@ def _path(scene: Scene, query: Query) -> tuple[NDArray[np.float64] | None, int]:
     mesh = prepare(scene)
     if mesh is None:
         return tangent_path(scene, query)
+    return path_over(mesh, query)
+
+
+def path_over(mesh: Mesh, query: Query) -> tuple[NDArray[np.float64] | None, int]:
+    """Shortest path over a mesh, and how many triangles the search looked into.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Of the scene's free space.
+    query : Query
+
+    Returns
+    -------
+    path : (n, 2) float64, metres, or None if there is none
+    checks : int
+        Each triangle as often as it was looked into.
+    """
     (sx, sy), (gx, gy) = query.start, query.goal
     order, checks = nodes_of_shortest_path(sx, sy, gx, gy, mesh)
     if order.size == 0:

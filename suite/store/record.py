@@ -135,8 +135,8 @@ class RunRecord:
 
     cell : what was run.
     status : how it ended.
-    reason : why it ended so, where that is not plain: a refusal, the referee's objection, the end
-        of a traceback.
+    reason : why it ended so, where that is not plain: a refusal, the referee's objection, what the
+        planner says of there being no path, the end of a traceback.
     cost : the referee's length of the path, metres; None without an accepted path.
     claimed_cost : the planner's own cost, metres, whatever it means by it.
     claim_differs : whether the claim of an accepted path is not what the referee measured.

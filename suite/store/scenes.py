@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import pandas as pd
+import shapely
 
 from suite.errors import SceneError, StoreError
 from suite.scenes.catalogue import load_scene, scene_as_it_was
@@ -40,12 +41,16 @@ class KeptScenes:
         names = queries[_NAME].itertuples(index=False, name=None)
         self._store = store
         self._digests = dict(zip(names, queries["digest"], strict=True))
-        self._scenes: dict[str, Scene] = {}
+        self._scenes: dict[str | None, Scene] = {}
         self._load = cache(load_scene)  # a map has hundreds of queries, and takes a while
 
     def keeps(self, row: Mapping[Any, Any]) -> bool:
         """Whether the store keeps the scene of a row."""
-        return self._digest(row) is not None
+        return self.digest(row) is not None
+
+    def digest(self, row: Mapping[Any, Any]) -> str | None:
+        """What the document of a row's scene is kept by; None if the store keeps none."""
+        return self._digests.get(tuple(row[name] for name in _NAME))
 
     def of(self, row: Mapping[Any, Any]) -> tuple[Scene, Query]:
         """The scene and the query of a row, as it was made.
@@ -62,18 +67,28 @@ class KeptScenes:
         SceneError
             If it keeps none, and the file is gone or has changed.
         """
-        digest = self._digest(row)
-        if digest is None:
+        if not self.keeps(row):
             return self._of_file(row)
-        scene = self._scenes.get(digest)
-        if scene is None:
-            scene = self._scenes[digest] = self._read(row)
+        scene = self.drawn(row)
         query = scene.query(row["query"])
         if scene_fingerprint(scene, query) != row["scene_hash"]:
             raise StoreError(
                 f"{self._store}: the scene that it keeps as {scene.name} is none of its rows'."
             )
         return scene, query
+
+    def drawn(self, row: Mapping[Any, Any]) -> Scene:
+        """The scene of a row, whatever its query: nothing is arranged to look for that.
+
+        Raises
+        ------
+        StoreError
+            If the store does not keep it, or it is damaged.
+        """
+        digest = self.digest(row)
+        if digest not in self._scenes:
+            self._scenes[digest] = self._read(row)
+        return self._scenes[digest]
 
     def document(self, row: Mapping[Any, Any]) -> bytes:
         """The document of the scene of a row, as :mod:`suite.scenes.kept` describes it.
@@ -85,7 +100,7 @@ class KeptScenes:
         """
         with closing(open_for_reading(self._store)) as connection, explained(self._store):
             found = connection.execute(
-                "SELECT document FROM scenes WHERE digest = ?", (self._digest(row),)
+                "SELECT document FROM scenes WHERE digest = ?", (self.digest(row),)
             ).fetchone()
         if found is None:
             raise StoreError(f"{self._store}: the scene {row['scene']} of its rows is not in it.")
@@ -99,9 +114,6 @@ class KeptScenes:
             raise StoreError(
                 f"{error} Take a copy of the store, or run the matrix into a new one."
             ) from error
-
-    def _digest(self, row: Mapping[Any, Any]) -> str | None:
-        return self._digests.get(tuple(row[name] for name in _NAME))
 
     def _of_file(self, row: Mapping[Any, Any]) -> tuple[Scene, Query]:
         try:
@@ -150,6 +162,46 @@ def ends_of_rows(store: Path, runs: pd.DataFrame | None = None) -> pd.DataFrame:
     return ends.assign(
         stratum=ends["stratum"].astype("object").where(ends["stratum"].notna(), None)
     )
+
+
+def sizes_of_scenes(store: Path, runs: pd.DataFrame) -> pd.DataFrame:
+    """How large the scenes are that rows ran on.
+
+    Parameters
+    ----------
+    store : Path
+    runs : DataFrame
+        Rows of it, as :func:`suite.store.read.read_runs` gives them.
+
+    Returns
+    -------
+    DataFrame
+        A row for each scene that the store keeps, in the order of its first row, and another one
+        for each other geometry of that name: scene, vertices and obstacles that it was drawn with,
+        free_share (of the workspace's area, at time 0). None of a scene that can't be read.
+    """
+    kept = KeptScenes(store)
+    found: dict[tuple[str, str], dict[str, Any]] = {}
+    for row in runs.drop_duplicates(_NAME)[_NAME].to_dict("records"):
+        digest = kept.digest(row)
+        if digest is None or (row["scene"], digest) in found:
+            continue
+        try:
+            scene = kept.drawn(row)
+        except StoreError:  # the report says so where it would draw it
+            continue
+        found[row["scene"], digest] = {"scene": row["scene"]} | _size(scene)
+    return pd.DataFrame(found.values(), columns=["scene", "vertices", "obstacles", "free_share"])
+
+
+def _size(scene: Scene) -> dict[str, Any]:
+    # Without the arrangement, which takes as long as preparing the scene did.
+    solid = shapely.union_all([obstacle.polygon for obstacle in scene.at_first.obstacles])
+    return {
+        "vertices": scene.vertex_count,
+        "obstacles": len(scene.obstacles),
+        "free_share": 1.0 - solid.area / scene.workspace.area,
+    }
 
 
 @contextmanager

@@ -6,6 +6,7 @@ come within a gap of the optimum the median over all of them. Only then is anyth
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from suite.planner import PlanStatus
 from suite.report.rows import is_of_map
@@ -44,6 +45,17 @@ def time_to(target: float) -> str:
     'to 2 % (s)'
     """
     return f"to {100.0 * target:g} % (s)"
+
+
+def quantile(values: NDArray[np.float64], share: float) -> float:
+    """The least value that such a share of the queries does not exceed: one of theirs.
+
+    Examples
+    --------
+    >>> quantile(np.array([4.0, 1.0, 2.0, 3.0]), 0.5)
+    2.0
+    """
+    return float(np.quantile(values, share, method="inverted_cdf")) if len(values) else np.nan
 
 
 def query_measures(steps: Steps) -> pd.DataFrame:

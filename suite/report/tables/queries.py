@@ -19,12 +19,14 @@ from suite.report.statistics.over_queries import (
     EQUAL,
     TARGETS,
     only_maps,
+    quantile,
     query_measures,
     time_to,
 )
 from suite.report.table import INFINITE, Kind, Table
 from suite.report.tables.map_settings import settings_tables
 from suite.report.tables.statistics import REFERENCE
+from suite.report.tables.strata import strata_table
 from suite.report.words import joined
 
 NARROW = [
@@ -108,11 +110,12 @@ def map_tables(
         "maps-lengths", "Maps: short and long queries apart", by_length(measures), LENGTHS_NOTE,
         "never", detail=True, infinite_in=dict.fromkeys(_GAPS, INFINITE),
     )  # fmt: skip
+    strata = strata_table(shown, measures)
     by_query = Table(
         "queries", "Each planner on each query of the maps", _by_query(measures), QUERY_NOTE,
         "never", detail=True, on_page=False,
     )  # fmt: skip
-    return [*tables, lengths, by_query]
+    return [*tables, lengths, *([] if strata is None else [strata]), by_query]
 
 
 QUANTILES = {"gap 90th (%)": 0.9, "gap 99th (%)": 0.99, "gap worst (%)": 1.0}
@@ -173,7 +176,7 @@ def _row(group: pd.DataFrame, blocked: int, rng: np.random.Generator) -> dict[st
         "gap mean (%)": mean.estimate,
         "low (%)": mean.low,
         "high (%)": mean.high,
-        **{name: _quantile(gap, share) for name, share in QUANTILES.items()},
+        **{name: quantile(gap, share) for name, share in QUANTILES.items()},
         **_times(group),
         "clearance (m)": float(group["clearance"].mean()),
         "turning (rad)": float(group["turning"].mean()),
@@ -184,11 +187,6 @@ def _interval(gap: Array, statistic: Callable[..., Any], rng: np.random.Generato
     if not len(gap):
         return Interval(np.nan, np.nan, np.nan)
     return bootstrap(gap[:, None], lambda scores: np.asarray(statistic(scores, axis=-1)), rng)
-
-
-def _quantile(gap: Array, share: float) -> float:
-    """The least gap that such a share of the queries does not exceed: one of theirs."""
-    return float(np.quantile(gap, share, method="inverted_cdf")) if len(gap) else np.nan
 
 
 def _times(group: pd.DataFrame) -> dict[str, float]:

@@ -6,7 +6,8 @@ wide as they are drawn (a dashed one as if it were not). Paint that is white is 
 where it is opaque it hides what was painted before, as the floor of a room does; other paint counts
 if it is darker than the threshold: 1 is black, and the default anything that is not white. What has
 neither fill nor stroke is not there, nor is what is hidden. Text and images are left out with a
-warning; masks and clip paths are not applied, so that an obstacle is rather larger.
+warning. Masks and clip paths are not applied, with a warning: what they cut off is obstacle all the
+same, and white that they cut hides nothing, so that an obstacle is rather larger.
 
 The workspace is the page: the viewBox, without one width and height, without either the box of all
 that is painted. A unit of the viewBox is a metre (the modifier scale makes it another length), the
@@ -79,6 +80,10 @@ _JOINS: dict[str, Literal["mitre", "round", "bevel"]] = {
 }
 
 
+_CUTS = ("clip-path", "mask")
+"""Attributes, and properties of styles, by which less of an element is shown than is drawn."""
+
+
 @dataclass(frozen=True, slots=True)
 class Page:
     """What is shown of the plane of a drawing, in its units, y down.
@@ -101,6 +106,14 @@ class Page:
         return np.column_stack([xy[:, 0] - self.x, self.y + self.height - xy[:, 1]])
 
 
+@dataclass(frozen=True, slots=True)
+class Painted:
+    """A shape, and whether it or a group that it lies in is clipped or masked."""
+
+    shape: Any
+    is_cut: bool
+
+
 def read_svg(path: Path, options: MapOptions) -> Drawing:
     """Read a drawing, of which each thing that is painted is an obstacle, cut at the page.
 
@@ -116,11 +129,11 @@ def read_svg(path: Path, options: MapOptions) -> Drawing:
     room = shapely.box(0.0, 0.0, page.width, page.height)
     floor = DARKEST_FLOOR if options.threshold is None else options.threshold
     painted: list[BaseGeometry] = []
-    for shape in shapes:
-        for area, dark in _areas(path, shape, page, floor):
+    for one in shapes:
+        for area, dark in _areas(path, one.shape, page, floor):
             if dark:
                 painted.append(area)
-            else:
+            elif not one.is_cut:
                 painted = [below.difference(area) for below in painted]
     obstacles = tuple(p for area in painted for p in solids(area.intersection(room)))
     if not obstacles:
@@ -178,22 +191,22 @@ def _pixels(path: Path, length: str) -> float:
     return float(found[1]) * PIXELS[found[2]]
 
 
-def _shapes(path: Path, root: ElementTree.Element) -> list[Any]:
+def _shapes(path: Path, root: ElementTree.Element) -> list[Painted]:
     """All that is painted, in turn, each with its own transform."""
     _put_templates_away(path, root)
     text = io.BytesIO(ElementTree.tostring(root))
     try:
         drawing = svgelements.SVG.parse(text, reify=False, ppi=PIXELS_PER_INCH)
-        elements = list(drawing.elements())
+        elements = list(_elements(drawing))
     except RecursionError as error:
         raise SceneError(f"{path.name}: an element uses itself, or lies too deep.") from error
     # The library checks no attribute: one that is broken ends in whatever it meets first.
     except Exception as error:
         raise SceneError(f"{path.name}: an attribute can't be read ({one_line(error)}).") from error
     left_out = Counter(
-        type(e).__name__.lower() + "s"
+        type(e.shape).__name__.lower() + "s"
         for e in elements
-        if isinstance(e, svgelements.Text | svgelements.Image)
+        if isinstance(e.shape, svgelements.Text | svgelements.Image)
     )
     if left_out:
         told = " and ".join(f"{count} {kind}" for kind, count in sorted(left_out.items()))
@@ -202,7 +215,29 @@ def _shapes(path: Path, root: ElementTree.Element) -> list[Any]:
             SceneWarning,
             stacklevel=3,
         )
-    return [e for e in elements if isinstance(e, svgelements.Shape) and _is_visible(e)]
+    shapes = [
+        e for e in elements if isinstance(e.shape, svgelements.Shape) and _is_visible(e.shape)
+    ]
+    cut = sum(e.is_cut for e in shapes)
+    if cut:
+        warnings.warn(
+            f"{path.name}: {cut} of {len(shapes)} shapes are clipped or masked, which is not "
+            "applied: all of a dark one is an obstacle, and a white one hides nothing. Cut them in "
+            "a drawing program (Inkscape: Object, Clip, Release; then Path, Intersection).",
+            SceneWarning,
+            stacklevel=3,
+        )
+    return shapes
+
+
+def _elements(element: Any, *, is_cut: bool = False) -> Iterator[Painted]:
+    """An element and all that lies in it, in turn."""
+    # What a group is clipped by, its elements do not know.
+    is_cut = is_cut or any(element.values.get(by) not in (None, "", "none") for by in _CUTS)
+    yield Painted(element, is_cut)
+    if isinstance(element, list):
+        for child in element:
+            yield from _elements(child, is_cut=is_cut)
 
 
 def _put_templates_away(path: Path, root: ElementTree.Element) -> None:
@@ -225,9 +260,9 @@ def _is_visible(shape: Any) -> bool:
     return shape.values.get("visibility", "visible") not in ("hidden", "collapse")
 
 
-def _box(path: Path, shapes: list[Any]) -> Page:
+def _box(path: Path, shapes: list[Painted]) -> Page:
     """The page of a drawing that names none: as large as what is on it."""
-    boxes = [shape.bbox(with_stroke=True) for shape in shapes]
+    boxes = [one.shape.bbox(with_stroke=True) for one in shapes]
     found = np.array([box for box in boxes if box is not None], dtype=np.float64).reshape(-1, 4)
     if not found.size or not np.isfinite(found).all():
         raise SceneError(f"{path.name}: has no page, and nothing is painted. Give it a viewBox.")

@@ -103,3 +103,16 @@ def test_a_plan_comes_out_in_numbers_of_pythons_own_with_its_path_as_it_was():
 def test_what_is_no_well_formed_plan_is_refused_with_what_is_wrong(returned, wrong):
     with pytest.raises(ContractError, match=wrong):
         plain_plan(returned)
+
+
+def test_a_plan_says_why_there_is_no_path_and_nothing_of_one_that_there_is():
+    why = "no way: the goal is walled in."
+    assert plain_plan(Plan(PlanStatus.INFEASIBLE, reason=why)).reason == why
+    assert plain_plan(Plan(PlanStatus.EXHAUSTED)).reason is None
+    solved = Plan(PlanStatus.SOLVED, np.zeros((2, 2)), reason=why)
+    assert plain_plan(solved).reason is None
+
+
+def test_a_reason_that_is_no_sentence_is_refused():
+    with pytest.raises(ContractError, match=r"the reason of the plan is a int\. It must be"):
+        plain_plan(Plan(PlanStatus.EXHAUSTED, reason=3))

@@ -158,6 +158,43 @@ def test_text_and_images_are_left_out_and_said_to_be(drawing):
         assert len(drawing(svg(body)).obstacles) == 1
 
 
+CLIP = '<clipPath id="c"><rect x="60" y="60" width="50" height="50"/></clipPath>'
+MASK = '<mask id="m"><rect x="60" y="60" width="50" height="50" fill="white"/></mask>'
+BLACK = '<rect x="50" y="50" width="100" height="100"{}/>'
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        CLIP + BLACK.format(' clip-path="url(#c)"'),
+        BLACK.format(' clip-path="url(#c)"') + CLIP,
+        CLIP + BLACK.format(' style="clip-path: url(#c)"'),
+        f"<style>.part {{clip-path: url(#c)}}</style>{CLIP}" + BLACK.format(' class="part"'),
+        f'{CLIP}<g clip-path="url(#c)"><g clip-path="none">{BLACK.format("")}</g></g>',
+        CLIP + "<defs>" + BLACK.format(' id="r"') + '</defs><use href="#r" clip-path="url(#c)"/>',
+        MASK + BLACK.format(' mask="url(#m)"'),
+        f'{MASK}<g mask="url(#m)">{BLACK.format("")}</g>',
+    ],
+)
+def test_what_is_cut_off_by_a_clip_path_or_a_mask_is_an_obstacle_and_said_to_be(drawing, body):
+    other = '<rect x="200" y="50" width="10" height="10" clip-path="none"/>'
+    with pytest.warns(
+        SceneWarning, match=r"^hall\.svg: 1 of 2 shapes are clipped or masked, which"
+    ):
+        found = drawing(svg(body + other))
+    assert areas(found) == pytest.approx([10_000.0, 100.0])
+
+
+@pytest.mark.parametrize("cut", [' clip-path="url(#c)"', ' mask="url(#m)"'])
+def test_white_that_is_cut_hides_nothing(drawing, cut):
+    """Or an obstacle that is drawn outside the clip would be free."""
+    white = BLACK.format(' fill="white"' + cut)
+    with pytest.warns(SceneWarning, match="1 of 2 shapes are clipped or masked"):
+        assert areas(drawing(svg(CLIP + MASK + BLACK.format("") + white))) == [10_000.0]
+    with pytest.raises(SceneError, match="nothing on its page is painted"):
+        drawing(svg(CLIP + MASK + BLACK.format("") + white.replace(cut, "")))
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
