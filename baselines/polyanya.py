@@ -7,16 +7,12 @@ mesh is a constrained Delaunay triangulation of free space, see :mod:`suite.geom
 from typing import ClassVar
 
 import numpy as np
-import shapely
-from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from baselines.visibility_graph import tiny_scene
-from suite.geometry.coordinates import printed
-from suite.geometry.mesh import ORIGIN, WAY, Mesh, mesh_of
+from suite.geometry.mesh import mesh_of
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder
 from suite.scenes.exact import path_length, path_over
+from suite.scenes.reach import no_way
 from suite.scenes.scene import Query, Scene
 from suite.scenes.visibility import tangent_path
 
@@ -61,7 +57,7 @@ class PolyanyaPlanner(Planner):
             "search_cpu_s": ended - made,
         }
         if path is None:
-            reason = None if mesh is None else no_way(mesh, query)
+            reason = no_way(scene, query)
             return Plan(PlanStatus.INFEASIBLE, details=details, reason=reason)
         length = path_length(path)
         recorder.improved(length)
@@ -71,58 +67,3 @@ class PolyanyaPlanner(Planner):
         """Compile the mesh and the search."""
         scene = tiny_scene()
         self.plan(scene, scene.query(), Budget(), np.random.default_rng(0), Recorder())
-
-
-def no_way(mesh: Mesh, query: Query) -> str:
-    """Why no path leads from start to goal, in a sentence that anybody can check on the mesh.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    query : Query
-        Without a path.
-
-    Examples
-    --------
-    >>> from suite.scenes.scene import make_scene
-    >>> wall = shapely.box(4, 0, 6, 10)
-    >>> scene = make_scene("two rooms", shapely.box(0, 0, 10, 10), [wall], ((1, 1), (9, 9)))
-    >>> no_way(scene.mesh, scene.query()).partition(" of its mesh; ")[0]
-    'no way: the start lies in a part of free space of 40 m2, 2 of the 4 triangles'
-    """
-    triangles = mesh.vertices[mesh.half_edges[:, ORIGIN]].reshape(-1, 3, 2)
-    start, goal = (_holding(mesh, triangles, end) for end in (query.start, query.goal))
-    for what, end, inside in (("start", query.start, start), ("goal", query.goal, goal)):
-        if not inside.size:
-            return f"no way: the {what} {printed(*end)} lies in no free space."
-    parts = _parts(mesh)
-    reached = np.isin(parts, parts[start])
-    return (
-        f"no way: the start lies in a part of free space of {_area(triangles[reached]):.6g} m2, "
-        f"{reached.sum()} of the {len(parts)} triangles of its mesh; none of these has a side in "
-        "common with any other triangle, and the goal lies in none of them."
-    )
-
-
-def _holding(
-    mesh: Mesh, triangles: NDArray[np.float64], point: NDArray[np.float64]
-) -> NDArray[np.intp]:
-    """Numbers of the triangles (T, 3, 2) that hold a point, borders included."""
-    low, high = mesh.boxes[:, :2], mesh.boxes[:, 2:]
-    near = np.flatnonzero(((low <= point) & (point <= high)).all(axis=1))
-    return near[shapely.intersects(shapely.polygons(triangles[near]), shapely.Point(point))]
-
-
-def _parts(mesh: Mesh) -> NDArray[np.int32]:
-    """The connected part that each triangle belongs to: a number (T,)."""
-    way = mesh.half_edges[:, WAY]
-    twin = np.where(way < -1, -2 - way, way)
-    sides = np.flatnonzero(twin >= 0)
-    count = len(mesh.boxes)
-    pairs = sides // 3, twin[sides] // 3
-    return connected_components(coo_array((np.ones(len(sides)), pairs), (count, count)))[1]
-
-
-def _area(triangles: NDArray[np.float64]) -> float:
-    a, b = (triangles[:, i] - triangles[:, 0] for i in (1, 2))
-    return 0.5 * float(np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum())

@@ -4,11 +4,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
-from kbga.counter import ASKED, COMPUTED, is_spent, make_counter
-from kbga.draws import LEAST_BLOCK, left_of, make_draws, refill
+from kbga.counter import ASKED, COMPUTED, LIMIT, is_spent, make_counter
+from kbga.draws import LEAST_BLOCK, Draws, left_of, make_draws, refill
 from kbga.dynamic import disturb, genes_of, most_draws_of_disturbance, put_path, restart
 from kbga.encoding import Population, copy_chromosome, empty_population, path_of
 from kbga.evolution import (
@@ -24,9 +23,10 @@ from kbga.operators.repair import scratch_for
 from kbga.problem import Problem, make_problem
 from kbga.selection import keep_elite
 from kbga.settings import KBGASettings
-from kbga.taut import LEAST_GAIN, length_of_path, pull_taut
+from kbga.taut import is_feasible, length_of_path, make_strings, pull_promising, rest_of
 from kbga.trace import trace_of
 from kbga.tuning import empty_tally, rates_of, tuned
+from suite.scenes.reach import reachable_bounds
 from suite.scenes.scene import Query, Scene
 
 if TYPE_CHECKING:
@@ -93,12 +93,15 @@ class KBGA:
         self.settings = settings
         self._rng = rng
         self._scene = scene
-        self._start = query.start
+        over_room = settings.lattice_over == "room"
+        self._bounds = scene.bounds if over_room else reachable_bounds(scene, query)
+        self._ends = np.array([query.start, query.goal])
         self._problem = self._problem_of(scene)
         self._rates = rates_of(settings)
         self.population = empty_population(settings.population_size, settings.max_nodes)
         self._children = empty_population(settings.population_size, settings.max_nodes)
         self._scratch = scratch_for(self._problem, settings)
+        self._strings = make_strings()
         self._counter = make_counter(checks)
         self._tally = empty_tally()
         informed = round(settings.informed_share * settings.population_size)
@@ -136,6 +139,12 @@ class KBGA:
         disturbance = most_draws_of_disturbance(settings.population_size)
         return max(LEAST_BLOCK, first, disturbance, 4 * most_draws_of_a_pair(self._rates))
 
+    def _refilled(self, most: int) -> Draws:
+        """The random numbers, of which ``most`` at least are left."""
+        if left_of(self._draws) < most:
+            refill(self._draws, self._rng)
+        return self._draws
+
     @property
     def checks(self) -> int:
         """Questions asked whether a segment is free, since the last change of the scene."""
@@ -169,11 +178,11 @@ class KBGA:
         """
         self.generation += 1
         improved = False
+        self._renew()
         made, count = 0, len(self.population.chromosomes)
         while made < count:
             before = made
-            if left_of(self._draws) < most_draws_of_a_pair(self._rates):
-                refill(self._draws, self._rng)
+            draws = self._refilled(most_draws_of_a_pair(self._rates))
             made = next_children(
                 self.population,
                 self._children,
@@ -182,7 +191,7 @@ class KBGA:
                 self._scratch,
                 self._problem,
                 self._rates,
-                self._draws,
+                draws,
                 self._counter,
                 self._tally,
             )
@@ -205,18 +214,60 @@ class KBGA:
     def _take_best(self, population: Population, first: int, last: int) -> bool:
         """Note the best feasible path among some chromosomes if it is a better one; whether."""
         best = best_feasible(population, first, last)
-        if best < 0 or not population.chromosomes["cost"][best] < self._least_on_lattice:
+        path, cost = None, self.best_cost
+        if best >= 0 and population.chromosomes["cost"][best] < self._least_on_lattice:
+            self._best_on_lattice = path_of(population, best)
+            self._least_on_lattice = float(population.chromosomes["cost"][best])
+            if self._least_on_lattice < cost:
+                path, cost = self._best_on_lattice, self._least_on_lattice
+        if best >= 0 and self.settings.taut:
+            pulled = self._pull_taut(population, first, last, cost)
+            if pulled is not None:
+                path, cost = pulled, length_of_path(pulled)
+        if path is None:
             return False
-        self._best_on_lattice = path = path_of(population, best)
-        self._least_on_lattice = cost = float(population.chromosomes["cost"][best])
-        if self.settings.taut:
-            path = pull_taut(path, self._problem.arrays, self._counter)
-            cost = min(cost, length_of_path(path))
-            if cost >= self.best_cost * (1.0 - LEAST_GAIN):
-                return False
         self.best_path, self.best_cost = path, cost
         self.generation_of_best = self.generation
         return True
+
+    def _pull_taut(
+        self, population: Population, first: int, last: int, known: float
+    ) -> NDArray[np.float64] | None:
+        """The shortest string of some chromosomes, if it is shorter than what is known."""
+        limit = float(self.settings.taut) * known
+        arrays = self._problem.arrays
+        return pull_promising(
+            population, first, last, limit, known, self._strings, arrays, self._counter
+        )
+
+    def _renew(self) -> None:
+        """Let new random chromosomes take the places of some, once nothing better was found.
+
+        A population that has converged has one route, and its children are that route's. The best
+        chromosome stays.
+        """
+        count = round(self.settings.immigrants * self._size)
+        if count == 0 or self.best_path is None or self.generation_of_best >= self.generation - 1:
+            return
+        settings, population = self.settings, self.population
+        count = min(count, self._size - 1)
+        best = int(population.chromosomes["cost"].argmin())
+        if best < count:
+            copy_chromosome(population, best, population, self._size - 1)
+        first_population(
+            Population(population.nodes[:count], population.chromosomes[:count]),
+            self._ends[0],
+            self._ends[1],
+            int(settings.initial_nodes),
+            0,
+            self._scratch,
+            self._problem,
+            self._rates,
+            self._refilled(
+                most_draws_of_first_population(count, settings.initial_nodes, 0, self._rates)
+            ),
+            self._counter,
+        )
 
     def _take_lowest(self) -> None:
         lowest = float(self.population.chromosomes["cost"].min())
@@ -249,6 +300,8 @@ class KBGA:
             raise ValueError(f"the workspace is {scene.bounds}; it was {self._scene.bounds}")
         changed = scene is not self._scene
         self._scene = scene
+        self._ends[0] = start
+        rest = None if self.best_path is None else rest_of(self.best_path, self._ends[0])
         self._keep_best_path()
         if changed:
             self._problem = self._problem_of(scene)
@@ -263,11 +316,27 @@ class KBGA:
         x, y = (float(v) for v in start)  # of one type each, whatever the array's
         penalty = self._rates.penalty
         restart(self.population, x, y, self._problem, penalty, self._counter)
+        self._strings = make_strings()
         self._take_best(self.population, 0, self._size)
         if changed:
             self._disturb()
             self._take_best(self.population, 0, self._size)
+        if self.settings.taut and rest is not None:
+            self._keep_rest(rest)
         self._take_lowest()
+
+    def _keep_rest(self, rest: NDArray[np.float64]) -> None:
+        """Keep what is left of the string that the robot follows, if it is free and still best.
+
+        No chromosome holds it: its bends lie off the lattice.
+        """
+        asked = len(rest) - 1
+        if self.checks + asked > self._counter[LIMIT]:
+            return
+        self._counter[[ASKED, COMPUTED]] += asked
+        length = length_of_path(rest)
+        if length < self.best_cost and is_feasible(rest, self._problem.arrays):
+            self.best_path, self.best_cost = rest, length
 
     def _keep_best_path(self) -> None:
         """Put the best feasible path first, at the cost of the worst: of equal ones it is taken.
@@ -286,27 +355,23 @@ class KBGA:
         best = best_feasible(self.population, 0, self._size)
         spared = int(self.population.chromosomes["cost"].argmin()) if best < 0 else best
         probability = float(self.settings.change_mutation_probability)
-        if left_of(self._draws) < most_draws_of_disturbance(self._size):
-            refill(self._draws, self._rng)
         disturb(
             self.population,
             spared,
             probability,
             self._problem,
             self._rates,
-            self._draws,
+            self._refilled(most_draws_of_disturbance(self._size)),
             self._counter,
         )
 
     def _problem_of(self, scene: Scene) -> Problem:
-        room = scene.workspace
-        if self.settings.over == "region":
-            room = shapely.box(*region_around(scene.regions, self._start).bounds)
         return make_problem(
             scene.arrangement,
-            room.bounds,
+            self._bounds,
             self.settings.resolution,
-            room=room,
+            room=scene.workspace if self._bounds == scene.bounds else None,
+            coordinates=scene.coordinates,
             reach=int(self.settings.repair_reach),
         )
 
@@ -391,11 +456,6 @@ class KBGA:
             if ended or self.generation >= self.settings.max_generations:
                 return self.best_path
             improved = self.step(on_improvement)
-
-
-def region_around(regions, place):
-    at = shapely.Point(place)
-    return min(regions.geoms, key=lambda region: region.distance(at))
 
 
 def _query_of(scene: Scene, query: Query | str | None) -> Query:

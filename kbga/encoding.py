@@ -12,7 +12,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from suite.geometry.coordinates import coordinates_of
+from suite.geometry.coordinates import Coordinates, coordinates_of
 from suite.jit import kernel
 
 FINEST = 20_000
@@ -43,7 +43,10 @@ class Lattice(NamedTuple):
 
 
 def make_lattice(
-    bounds: tuple[float, float, float, float], resolution: int, area: float | None = None
+    bounds: tuple[float, float, float, float],
+    resolution: int,
+    area: float | None = None,
+    coordinates: Coordinates | None = None,
 ) -> Lattice:
     """Lay a lattice over a workspace.
 
@@ -56,6 +59,7 @@ def make_lattice(
     bounds : xmin, ymin, xmax, ymax of the workspace, metres.
     resolution : units per side of a square of that area.
     area : float, of the workspace, square metres; default: it fills its bounds.
+    coordinates : of the scene, whose grid the lines keep to; default: those of these bounds.
     """
     xmin, ymin, xmax, ymax = bounds
     width, height = xmax - xmin, ymax - ymin
@@ -65,7 +69,8 @@ def make_lattice(
     # What rounding leaves off the last line is no reason to leave off the line.
     columns, rows = (int(side / unit + ROUNDING) + 1 for side in (width, height))
     lines = unit * np.arange(max(columns, rows))
-    places = coordinates_of(bounds).snapped(np.column_stack([xmin + lines, ymin + lines]))
+    grid = coordinates_of(bounds) if coordinates is None else coordinates
+    places = grid.snapped(np.column_stack([xmin + lines, ymin + lines]))
     xs, ys = np.array(places[:columns, 0]), np.array(places[:rows, 1])
     xs.setflags(write=False)
     ys.setflags(write=False)

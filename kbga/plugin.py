@@ -1,5 +1,6 @@
 """KBGA behind the plugin interface of ``suite.planner``."""
 
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
@@ -9,6 +10,7 @@ from kbga.algorithm import KBGA
 from kbga.memory import FIRST_SLOTS, empty_memory, with_room
 from kbga.settings import KBGAPlusSettings, KBGASettings
 from suite.planner import Abilities, Budget, Plan, Planner, PlanStatus, Recorder, Replanner
+from suite.scenes.reach import no_way
 from suite.scenes.scene import Query, Scene, make_scene, scene_at
 
 
@@ -38,12 +40,17 @@ class KBGAPlanner(Planner[KBGASettings]):
         The trace has a row per generation: best, mean, feasible_share, diversity and checks.
         A budget of checks ends the run at once, any other after the generation that it ends in.
         """
+        if self.settings.proves and (reason := no_way(scene, query)):
+            return Plan(PlanStatus.INFEASIBLE, checks=0, computed_checks=0, reason=reason)
         ga = KBGA(scene, query, self.settings, rng, budget.checks)
         return evolved(ga, budget, recorder)
 
     def replanner(self, rng: np.random.Generator) -> Replanner:
-        """KBGA that keeps its population from plan to plan."""
-        return KBGAReplanner(self.settings, rng)
+        """KBGA that keeps its population from plan to plan.
+
+        Its lattice lies over the room: what is free changes, and chromosomes are lattice numbers.
+        """
+        return KBGAReplanner(replace(self.settings, lattice_over="room"), rng)
 
     def warm_up(self) -> None:
         """Compile the kernels, or load them, on a scene that makes every operator work."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from kbga.encoding import Lattice, distance_to_segment, make_lattice, node_x, node_y
 from kbga.memory import Memory, empty_memory
 from suite.geometry.arrangement import Arrangement
+from suite.geometry.coordinates import Coordinates
 from suite.geometry.kernels import (
     FIRST_EDGE,
     LAST_EDGE,
@@ -70,6 +71,7 @@ def make_problem(
     *,
     room: shapely.Polygon | None = None,
     reach: int = 0,
+    coordinates: Coordinates | None = None,
 ) -> Problem:
     """Lay the lattice over a scene.
 
@@ -82,8 +84,11 @@ def make_problem(
         The workspace; default: its bounds.
     reach : int
         Of the search for nodes near an obstacle, lattice units; 0: next to its corners.
+    coordinates : Coordinates
+        Of the scene; default: those of a workspace of these bounds.
     """
-    lattice = make_lattice(bounds, resolution, None if room is None else room.area)
+    area = None if room is None else room.area
+    lattice = make_lattice(bounds, resolution, area, coordinates)
     groups = len(arrangement.arrays.groups)
     # Always a copy: a view would be read-only where there are no corners, another type to numba.
     corners = np.array(arrangement.corners[:, :2], order="C")

@@ -55,6 +55,15 @@ class KBGASettings:
         all of them in turn (a reading).
     remembers : whether nodes that improvement or deletion found settled are not drawn again until
         a neighbour changes (not in the paper, which draws "randomly").
+    taut : feasible paths up to so many times as long as the best are pulled taut, so that they bend
+        at corners, not at lattice nodes; 0: none (not in the paper, see :mod:`kbga.taut`).
+    immigrants : share of the population that gives way to new random chromosomes in each generation
+        after one without a better path (not in the paper; Grefenstette 1992).
+    proves : whether a run ends at once where no part of free space holds both start and goal, with
+        that as the proof that there is no path (not in the paper, which searches on).
+    lattice_over : the lattice covers the bounds of the "room", or of the "region" of free space
+        that the query lies in, as far as that is known when the run begins (the paper's rooms are
+        one region each). A robot that plans again and again has the room's.
     generations_counted : what "generations needed" counts: those until the "best" was found, or
         until the "stop" (a reading; it changes tables, not runs).
     max_generations : first stop criterion (the paper's plain GA ran beyond 444).
@@ -84,8 +93,10 @@ class KBGASettings:
     rounds: int = 2
     one_operator: bool = False
     remembers: bool = False
-    taut: bool = False
-    over: Literal["room", "region"] = "room"
+    taut: float = 0.0
+    immigrants: float = 0.0
+    proves: bool = False
+    lattice_over: Literal["room", "region"] = "room"
     generations_counted: Literal["best", "stop"] = "stop"
     max_generations: int = 500
     stagnation: int = 30
@@ -116,7 +127,7 @@ class KBGASettings:
             "improvement",
         )
         shares = [f"{operator}_probability" for operator in operators]
-        for name in (*shares, "informed_share", "adaptation_rate"):
+        for name in (*shares, "informed_share", "immigrants", "adaptation_rate"):
             value = getattr(self, name)
             if not (_is_number(value) and 0.0 <= value <= 1.0):
                 raise ValueError(f"{name} is {value!r}; it must lie in [0, 1]")
@@ -124,9 +135,15 @@ class KBGASettings:
             raise ValueError(f"resolution is {self.resolution}; it must be at most {FINEST}")
         if not (_is_number(self.repair_limit) and self.repair_limit > 0.0):
             raise ValueError(f"repair_limit is {self.repair_limit!r}; it must be above 0")
-        for name in ("repair_must_help", "one_operator", "remembers"):
+        for name in ("repair_must_help", "one_operator", "remembers", "proves"):
             if not isinstance(getattr(self, name), bool):
                 raise ValueError(f"{name} is {getattr(self, name)!r}; it must be true or false")
+        if not (_is_number(self.taut) and (self.taut == 0.0 or self.taut >= 1.0)):
+            raise ValueError(f"taut is {self.taut!r}; it must be 0, or 1 or more")
+        if self.lattice_over not in ("room", "region"):
+            raise ValueError(
+                f"lattice_over is {self.lattice_over!r}; it must be 'room' or 'region'"
+            )
         if self.generations_counted not in ("best", "stop"):
             raise ValueError(
                 f"generations_counted is {self.generations_counted!r}; it must be 'best' or 'stop'"

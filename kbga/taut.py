@@ -9,11 +9,14 @@ Repeated until nothing moves, this is the shortest path of its kind (homotopy cl
 Hershberger and Snoeyink (1994) shorten paths, without a triangulation.
 """
 
+from itertools import pairwise
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from kbga.counter import COMPUTED, may_ask
-from kbga.encoding import distance
+from kbga.encoding import Population, distance, distance_to_segment
 from suite.geometry.kernels import (
     FIRST,
     LAST,
@@ -32,10 +35,27 @@ from suite.geometry.predicates import orientation
 from suite.jit import kernel
 
 ROOM = 512
-"""Most nodes of a string. One that would need more stays as long as it is."""
+"""Most places of a string. One that would need more is not pulled any further."""
 
 LEAST_GAIN = 1e-12
-"""Share of a bend's length below which a gain is rounding."""
+"""Share of a length below which a gain is rounding."""
+
+
+class Strings(NamedTuple):
+    """Where paths are pulled taut, so that nothing is allocated within a generation.
+
+    pulled : (2, ROOM, 2) float64, metres. The string that is pulled, and the best so far.
+    seen : (1024,) float64, costs of chromosomes that were pulled; newer ones take older ones'
+        places. Two of one cost are one path, or mirror images of one length.
+    """
+
+    pulled: NDArray[np.float64]
+    seen: NDArray[np.float64]
+
+
+def make_strings() -> Strings:
+    """Room for strings, and nothing seen yet."""
+    return Strings(np.empty((2, ROOM, 2)), np.zeros(1024))
 
 
 def pull_taut(
@@ -59,13 +79,110 @@ def pull_taut(
     string = np.empty((max(ROOM, 2 * len(path)), 2))
     string[: len(path)] = path
     pulled = string[: _pull(string, len(path), arrays, counter)].copy()
-    # What was judged bend by bend is judged as a whole, as the referee does.
-    return pulled if first_collision(pulled, arrays) < 0 else path
+    return pulled if is_feasible(pulled, arrays) else path
+
+
+def pull_promising(
+    population: Population,
+    first: int,
+    last: int,
+    limit: float,
+    known: float,
+    strings: Strings,
+    arrays: ObstacleArrays,
+    counter: NDArray[np.int64],
+) -> NDArray[np.float64] | None:
+    """Pull those of some chromosomes taut that may become the best path, and were not seen before.
+
+    Parameters
+    ----------
+    population : Population
+    first, last : int
+        Which of its chromosomes, ``last`` excluded.
+    limit : float, metres
+        Feasible ones are pulled that cost less.
+    known : float, metres
+        Length of the best path so far.
+    strings : Strings
+    arrays : ObstacleArrays
+    counter : (3,) int64
+
+    Returns
+    -------
+    (m, 2) float64, metres, the best of them, if it is shorter than ``known``; else None.
+    """
+    count = _pull_some(population, first, last, limit, known, strings, arrays, counter)
+    if count == 0:
+        return None
+    path = strings.pulled[1, :count].copy()
+    return path if is_feasible(path, arrays) else None
+
+
+def is_feasible(path: NDArray[np.float64], arrays: ObstacleArrays) -> bool:
+    """Whether a path is free as a whole, as the referee judges it, and not bend by bend."""
+    return bool(first_collision(path, arrays) < 0)
 
 
 def length_of_path(path: NDArray[np.float64]) -> float:
     """Length of a path (n, 2), metres."""
     return float(np.hypot(*np.diff(path, axis=0).T).sum())
+
+
+def rest_of(path: NDArray[np.float64], place: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What is left of a path (n, 2) for a robot at a place (2,) on it, (m, 2), metres."""
+    x, y = place
+    away = [distance_to_segment(x, y, *a, *b) for a, b in pairwise(path)]
+    nearest = len(away) - 1 - int(np.argmin(away[::-1]))  # of several, the last
+    return np.vstack([place, path[nearest + 1 :]])
+
+
+@kernel
+def _pull_some(
+    population: Population,
+    first: int,
+    last: int,
+    limit: float,
+    known: float,
+    strings: Strings,
+    arrays: ObstacleArrays,
+    counter: np.ndarray,
+) -> int:
+    """Put the best string of some chromosomes into row 1; how many places it has, 0 if none."""
+    pulled, seen = strings.pulled, strings.seen
+    found = 0
+    for i in range(first, last):
+        cost = population.chromosomes[i].cost
+        if population.chromosomes[i].infeasible > 0 or cost >= limit:
+            continue
+        slot = _slot(cost, seen.size)
+        if seen[slot] == cost:
+            continue
+        seen[slot] = cost
+        count = population.chromosomes[i].intermediate + 2
+        if count > pulled.shape[1]:
+            continue
+        for k in range(count):
+            pulled[0, k, 0] = population.nodes[i, k].x
+            pulled[0, k, 1] = population.nodes[i, k].y
+        count = _pull(pulled[0], count, arrays, counter)
+        length = 0.0
+        for k in range(count - 1):
+            length += distance(
+                pulled[0, k, 0], pulled[0, k, 1], pulled[0, k + 1, 0], pulled[0, k + 1, 1]
+            )
+        if length < known * (1.0 - LEAST_GAIN):
+            known = length
+            found = count
+            for k in range(count):
+                pulled[1, k, 0], pulled[1, k, 1] = pulled[0, k, 0], pulled[0, k, 1]
+    return found
+
+
+@kernel
+def _slot(cost: float, size: int) -> int:
+    """Where a cost is noted: digits of it that differ from path to path."""
+    scattered = cost * 7919.7919
+    return int((scattered - np.floor(scattered)) * size)
 
 
 @kernel
