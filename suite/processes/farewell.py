@@ -37,9 +37,11 @@ def ending(say: Callable[[str], None]) -> Iterator[None]:
         if left:
             say(f"{left} still ran when the command was done, and ended with it.")
             _end(code)
-        # Registered last, so it runs first: the handlers of planners come after it.
-        atexit.register(_hurry, code)
-        raise
+        _hurry(code)
+        # Here and not as Python exits: there it hears no signal once the handlers are done, and the
+        # alarm kills a process that takes itself down on a slow machine, its work all done.
+        atexit._run_exitfuncs()
+        _end(code)
 
 
 def _left_running(before: set[threading.Thread]) -> str:

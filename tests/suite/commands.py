@@ -21,7 +21,7 @@ def in_own_process(*arguments, code=0, env=None):
     done = subprocess.run(
         [*COMMAND, *map(str, arguments)], capture_output=True, text=True, timeout=600, env=env
     )
-    assert done.returncode == code, done.stderr
+    assert done.returncode == code, (done.returncode, done.stdout, done.stderr)
     return Done(done.returncode, done.stdout, done.stderr)
 
 

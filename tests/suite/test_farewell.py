@@ -111,3 +111,24 @@ def test_a_closed_standard_output_is_no_fault():
     command = f"{sys.executable} -m suite list matrices >&-"
     done = subprocess.run(command, shell=True, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+SLOW_TO_TAKE_DOWN = """
+import sys, time
+from suite.processes import farewell
+
+class Slow:
+    def __del__(self, sleep=time.sleep):
+        sleep(20)
+
+farewell.FAREWELL_S = 1
+kept = Slow()
+with farewell.ending(print):
+    sys.exit(3)
+"""
+
+
+def test_a_command_keeps_its_exit_code_where_taking_down_the_interpreter_takes_long():
+    # As on a busy machine: four runs of a matrix were done, and the code was that of an alarm.
+    done = subprocess.run([sys.executable, "-c", SLOW_TO_TAKE_DOWN], timeout=600, check=False)
+    assert done.returncode == 3
