@@ -104,7 +104,7 @@ perf: setup-dev
 
 # Everything in results/ that comes from a matrix: three quarters of an hour on two cores, nothing
 # else running.
-STUDIES := resolution obstacles plus readings ablation mutation-rate penalty first-population tuning
+STUDIES := resolution obstacles plus kbga-plus readings ablation mutation-rate penalty first-population tuning
 CAMPAIGNS := ompl-tuning paper-static paper-dynamic all-planners alignment $(STUDIES)
 PAPER := paper-static paper-dynamic resolution
 NO_ROWS := --leave-out paths --leave-out traces
@@ -117,7 +117,7 @@ results-ablation: LEAVE := $(NO_ROWS) --leave-out events --leave-out comparisons
 results-resolution results-first-population: LEAVE := --leave-out paths $(NO_PICTURES)
 results-paper-static results-paper-dynamic: LEAVE := --leave-out paths
 results-all-planners: LEAVE := $(NO_ROWS) --leave-out paper-pictures
-results-alignment results-ompl-tuning results-plus: LEAVE := $(NO_ROWS) --leave-out events $(NO_PICTURES)
+results-alignment results-ompl-tuning results-plus results-kbga-plus: LEAVE := $(NO_ROWS) --leave-out events $(NO_PICTURES)
 
 results: $(CAMPAIGNS:%=results-%)
 	rm -f out/paper.db
@@ -130,6 +130,14 @@ $(CAMPAIGNS:%=results-%): results-%: setup
 	mkdir -p out
 	$(BIN)/kbga-bench run $* --store out/$*.db --jobs $(JOBS)
 	$(BIN)/kbga-bench results out/$*.db results/$* $(LEAVE)
+
+# On maps of your own, which are not copied: MAPS=FOLDER.
+results-real-maps results-real-maps-tuning: results-%: setup
+	@test -d "$(MAPS)" || { echo "Say where maps are, MAPS=FOLDER. Where they are to be had stands" \
+		"in suite/scenes/maps/README.md."; exit 2; }
+	mkdir -p out
+	$(BIN)/kbga-bench run $* --maps $(MAPS) --store out/$*.db --jobs $(JOBS)
+	$(BIN)/kbga-bench results out/$*.db results/$* $(NO_ROWS) --leave-out events $(NO_PICTURES)
 
 # The search for the reading of the paper; what it tried stays in out/, so that it can go on.
 search-readings: setup

@@ -15,7 +15,7 @@ Y. Hu and S. X. Yang, "A Novel Knowledge-Based Genetic Algorithm for Robot Path 
 Environments", sections II-A to II-D, the parameters and the dynamic environments of III, and the
 future work of V. A row with a section is what the paper says. "silent": the paper is, and both
 planners have this choice. "kbga": a choice of the paper's algorithm as we read it, and found by the
-search in results/readings. "plus": what only kbga-plus does, our own.
+search in results/readings. "plus": what only kbga-plus does, our own. "off": ours, off in both.
 
 =======  ============================================  ============================================
 paper    what it says                                  what carries it out
@@ -220,6 +220,14 @@ V        future work: a first population built with    KBGASettings.informed_sha
          knowledge of the domain                       kbga.evolution.first_population
 V        future work: probabilities of the operators   KBGASettings.adaptation_rate
          tuned on-line                                 kbga.tuning.tuned
+off      feasible paths are pulled taut, and leave     KBGASettings.taut
+         the lattice for corners                       kbga.taut.pull_taut
+off      new random chromosomes, while nothing better  KBGASettings.immigrants
+         is found
+off      the lattice lies over what can be reached     KBGASettings.lattice_over
+                                                       suite.scenes.reach.reachable_bounds
+off      that there is no way is told at once          KBGASettings.proves
+                                                       suite.scenes.reach.no_way
 =======  ============================================  ============================================
 """
 

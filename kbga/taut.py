@@ -258,9 +258,10 @@ def _next_of_hull(
     side: int,
     arrays: ObstacleArrays,
 ) -> tuple[float, float]:
-    """The place after (x, y) on the hull of a, c and all vertices in the triangle a, b, c.
+    """The place after (x, y) on the hull of a, c and all that stops a string in triangle a, b, c.
 
-    Gift wrapping (Jarvis 1973), on b's side of a-c.
+    Gift wrapping (Jarvis 1973), on b's side of a-c. The bend itself stops the string if a part has
+    it as a vertex and juts into the triangle there; a part on the other side does not.
     """
     tree, vertices = arrays.tree, arrays.vertices
     xmin, xmax = min(ax, bx, cx), max(ax, bx, cx)
@@ -276,8 +277,17 @@ def _next_of_hull(
         ):
             row = int(tree[row, SKIP])
             continue
-        for v in range(int(tree[row, FIRST]), int(tree[row, LAST])):
+        first, last = int(tree[row, FIRST]), int(tree[row, LAST])
+        for v in range(first, last):
             px, py = vertices[v, 0], vertices[v, 1]
+            if px == bx and py == by:
+                before = v - 1 if v > first else last - 1
+                after = v + 1 if v + 1 < last else first
+                if not (
+                    _is_in_wedge(vertices[before, 0], vertices[before, 1], ax, ay, bx, by, cx, cy)
+                    and _is_in_wedge(vertices[after, 0], vertices[after, 1], ax, ay, bx, by, cx, cy)
+                ):
+                    continue
             if (
                 xmin <= px <= xmax
                 and ymin <= py <= ymax
@@ -290,6 +300,17 @@ def _next_of_hull(
                 nx, ny = px, py
         row += 1
     return nx, ny
+
+
+@kernel
+def _is_in_wedge(
+    x: float, y: float, ax: float, ay: float, bx: float, by: float, cx: float, cy: float
+) -> bool:
+    """Whether a point lies in the closed wedge at b that the triangle a, b, c is cut from."""
+    inner = orientation(ax, ay, bx, by, cx, cy)
+    return (
+        orientation(ax, ay, bx, by, x, y) != -inner and orientation(bx, by, cx, cy, x, y) != -inner
+    )
 
 
 @kernel

@@ -71,12 +71,13 @@ def no_way(scene: Scene, query: Query) -> str | None:
     start = _touched(scene, scene.arrangement.free, query.start)
     goal = _touched(scene, scene.arrangement.free, query.goal)
     if not _have_one_in_common(start, goal):
-        regions = scene.regions.geoms
+        regions = list(scene.regions.geoms)
         start, goal = _touched(scene, regions, query.start), _touched(scene, regions, query.goal)
     if _have_one_in_common(start, goal):
         return None
-    if not start:
-        return f"no way: the start {printed(*query.start)} lies in no free space."
+    for what, end, parts in (("start", query.start, start), ("goal", query.goal, goal)):
+        if not parts:
+            return f"no way: the {what} {printed(*end)} lies in no free space."
     area = sum(part.area for part in start)
     return (
         f"no way: the start lies in a part of free space of {area:.6g} m2, which does not hold the "

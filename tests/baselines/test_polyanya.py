@@ -5,7 +5,7 @@ import pytest
 import shapely
 from hypothesis import given, settings
 
-from baselines.polyanya import PolyanyaPlanner, no_way
+from baselines.polyanya import PolyanyaPlanner
 from suite.geometry.mesh import mesh_of
 from suite.harness.cell import run_cell
 from suite.planner import Budget, Plan, PlanStatus, Recorder
@@ -71,12 +71,8 @@ def test_on_a_real_map_its_paths_have_the_published_lengths():
 def test_an_enclosed_goal_is_infeasible_with_the_proof_in_a_sentence():
     made = plan(CLOSED)
     assert (made.status, made.path, made.claimed_cost) == (PlanStatus.INFEASIBLE, None, None)
-    triangles = int(made.details["triangles"])
-    # The goal's room is a square, of two triangles; the start's is all but the ring's.
     assert made.reason == (
-        f"no way: the start lies in a part of free space of 84 m2, {triangles - 2} of the "
-        f"{triangles} triangles of its mesh; none of these has a side in common with any other "
-        "triangle, and the goal lies in none of them."
+        "no way: the start lies in a part of free space of 84 m2, which does not hold the goal."
     )
 
 
@@ -91,12 +87,6 @@ def test_an_end_inside_an_obstacle_is_named(ends, what):
         PlanStatus.INFEASIBLE,
         f"no way: {what} lies in no free space.",
     )
-
-
-def test_the_part_that_is_told_is_the_one_that_holds_the_start():
-    for scene in (CLOSED, make_scene("back", ROOM, [RING], ((8, 8), (1, 1)))):
-        part = next(p for p in scene.regions.geoms if p.covers(shapely.Point(scene.query().start)))
-        assert f"of {part.area:.6g} m2, " in no_way(scene.mesh, scene.query())
 
 
 def test_a_row_keeps_the_sentence(tmp_path):

@@ -4,6 +4,7 @@ import json
 import math
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -50,6 +51,16 @@ def test_the_referee_accepts_what_it_calls_solved_and_agrees_on_its_length():
     assert made.status is PlanStatus.SOLVED
     assert verdict.valid, verdict.reason
     assert made.claimed_cost == pytest.approx(verdict.length)
+
+
+def test_where_there_is_no_way_it_can_say_so_at_once_and_why():
+    recorder = Recorder()
+    made = plan(CLOSED, recorder=recorder, settings=replace(SMALL, proves=True))
+    assert (made.status, made.path, made.checks) == (PlanStatus.INFEASIBLE, None, 0)
+    assert made.reason == (
+        "no way: the start lies in a part of free space of 96 m2, which does not hold the goal."
+    )
+    assert plan(settings=replace(SMALL, proves=True)).status is PlanStatus.SOLVED
 
 
 def test_without_a_path_it_is_exhausted_and_claims_the_penalised_cost():
