@@ -23,9 +23,10 @@ from kbga.operators.repair import scratch_for
 from kbga.problem import Problem, make_problem
 from kbga.selection import keep_elite
 from kbga.settings import KBGASettings
-from kbga.taut import is_feasible, length_of_path, make_strings, pull_promising, rest_of
+from kbga.taut import is_feasible, make_strings, pull_promising, rest_of
 from kbga.trace import trace_of
 from kbga.tuning import empty_tally, rates_of, tuned
+from suite.scenes.exact import path_length
 from suite.scenes.reach import reachable_bounds
 from suite.scenes.scene import Query, Scene
 
@@ -223,7 +224,7 @@ class KBGA:
         if best >= 0 and self.settings.taut:
             pulled = self._pull_taut(population, first, last, cost)
             if pulled is not None:
-                path, cost = pulled, length_of_path(pulled)
+                path, cost = pulled, path_length(pulled)
         if path is None:
             return False
         self.best_path, self.best_cost = path, cost
@@ -301,7 +302,7 @@ class KBGA:
         changed = scene is not self._scene
         self._scene = scene
         self._ends[0] = start
-        rest = None if self.best_path is None else rest_of(self.best_path, self._ends[0])
+        rest = self._rest()
         self._keep_best_path()
         if changed:
             self._problem = self._problem_of(scene)
@@ -321,9 +322,15 @@ class KBGA:
         if changed:
             self._disturb()
             self._take_best(self.population, 0, self._size)
-        if self.settings.taut and rest is not None:
+        if rest is not None:
             self._keep_rest(rest)
         self._take_lowest()
+
+    def _rest(self) -> NDArray[np.float64] | None:
+        """What is left of the string that the robot follows; None if it follows no string."""
+        if self.best_path is None or not self.settings.taut:
+            return None
+        return rest_of(self.best_path, self._ends[0])
 
     def _keep_rest(self, rest: NDArray[np.float64]) -> None:
         """Keep what is left of the string that the robot follows, if it is free and still best.
@@ -334,7 +341,7 @@ class KBGA:
         if self.checks + asked > self._counter[LIMIT]:
             return
         self._counter[[ASKED, COMPUTED]] += asked
-        length = length_of_path(rest)
+        length = path_length(rest)
         if length < self.best_cost and is_feasible(rest, self._problem.arrays):
             self.best_path, self.best_cost = rest, length
 

@@ -123,11 +123,6 @@ def is_feasible(path: NDArray[np.float64], arrays: ObstacleArrays) -> bool:
     return bool(first_collision(path, arrays) < 0)
 
 
-def length_of_path(path: NDArray[np.float64]) -> float:
-    """Length of a path (n, 2), metres."""
-    return float(np.hypot(*np.diff(path, axis=0).T).sum())
-
-
 def rest_of(path: NDArray[np.float64], place: NDArray[np.float64]) -> NDArray[np.float64]:
     """What is left of a path (n, 2) for a robot at a place (2,) on it, (m, 2), metres."""
     x, y = place

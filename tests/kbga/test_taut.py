@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from kbga.algorithm import KBGA
 from kbga.counter import ASKED, COMPUTED, make_counter
 from kbga.settings import KBGAPlusSettings
-from kbga.taut import length_of_path, pull_taut, rest_of
+from kbga.taut import pull_taut, rest_of
 from suite.geometry.kernels import first_collision
 from suite.scenes.catalogue import load_scene
-from suite.scenes.exact import shortest_path
+from suite.scenes.exact import path_length, shortest_path
 from suite.scenes.homotopy import route_optima, routes_of
 from suite.scenes.scene import Scene, make_scene
 from tests.kbga.laboratory import random_scene
@@ -43,7 +43,7 @@ def test_a_taut_path_is_free_and_no_longer_and_bends_at_vertices_only(seed):
     for path in feasible_paths(scene, seed):
         taut = pulled(path, scene)
         assert first_collision(taut, scene.arrays) < 0
-        assert length_of_path(taut) <= length_of_path(path) * (1.0 + 1e-12)
+        assert path_length(taut) <= path_length(path) * (1.0 + 1e-12)
         assert (taut[[0, -1]] == path[[0, -1]]).all()
         assert {(x, y) for x, y in taut[1:-1].tolist()} <= vertices
 
@@ -68,7 +68,7 @@ def test_it_is_the_shortest_of_its_route(name):
         assert before == after, "it passes all obstacles on the sides where the path did"
         if after in routes:
             best = optima[routes.index(after)].length
-            assert length_of_path(taut) == pytest.approx(best, rel=1e-9)
+            assert path_length(taut) == pytest.approx(best, rel=1e-9)
             met += 1
     assert met > 10
 
@@ -106,7 +106,7 @@ def test_no_more_is_asked_than_may_be():
         taut = pull_taut(path, scene.arrays, counter)
         assert counter[COMPUTED] == counter[ASKED] <= limit
         assert first_collision(taut, scene.arrays) < 0
-        lengths.append(length_of_path(taut))
+        lengths.append(path_length(taut))
     assert lengths == sorted(lengths, reverse=True)
     assert lengths[-1] == pytest.approx(shortest_path(scene, scene.query()).length, rel=1e-9)
 
@@ -124,7 +124,7 @@ def test_kbga_plus_that_pulls_ends_at_the_optimum(name):
     scene = load_scene(name)
     ga = KBGA(scene, settings=KBGAPlusSettings(resolution=150, **PULLING), rng=1)
     path = ga.run()
-    assert length_of_path(path) == ga.best_cost
+    assert path_length(path) == ga.best_cost
     assert first_collision(path, scene.arrays) < 0
     assert ga.best_cost == pytest.approx(shortest_path(scene, scene.query()).length, rel=1e-9)
 
