@@ -53,14 +53,23 @@ class KBGAPlanner(Planner[KBGASettings]):
         return KBGAReplanner(replace(self.settings, lattice_over="room"), rng)
 
     def warm_up(self) -> None:
-        """Compile the kernels, or load them, on a scene that makes every operator work."""
+        """Compile the kernels, or load them, on a scene that makes every operator work.
+
+        Those of these settings: what pulls paths taut is loaded for nobody else.
+        """
         scene = make_scene(
             "warm-up",
             shapely.box(0.0, 0.0, 10.0, 10.0),
             [shapely.box(4.0, 0.0, 6.0, 8.0)],
             {"main": ((1.0, 1.0), (9.0, 1.0))},
         )
-        settings = self.Settings(resolution=10, population_size=10, max_generations=10)
+        settings = replace(
+            self.settings,
+            resolution=10,
+            population_size=10,
+            max_generations=10,
+            stagnation=10,
+        )
         ga = KBGA(scene, scene.query(), settings, np.random.default_rng(0))
         ga.run(lambda ga, _: ga.report().generation < 10)
         # Another object, so that the environment has changed.

@@ -87,30 +87,35 @@ def test_improvements_fall_and_the_last_is_the_path_returned():
     assert checks[-1] <= (made.checks or 0)
 
 
+TAUT = 'KBGAPlusPlanner(KBGAPlusSettings(taut=1.1, immigrants=0.5, lattice_over="region"))'
+
+
 @pytest.mark.skipif(not COMPILED, reason="nothing is compiled")
-def test_after_the_warm_up_a_run_compiles_and_loads_nothing_more():
-    code = """
+@pytest.mark.parametrize("planner", ["KBGAPlanner()", TAUT])
+def test_after_the_warm_up_a_run_compiles_and_loads_nothing_more(planner):
+    code = f"""
 from pathlib import Path
 import sys
 import numpy as np
 from numba.core.registry import CPUDispatcher
 from kbga.plugin import KBGAPlanner, KBGAPlusPlanner
+from kbga.settings import KBGAPlusSettings
 from suite.planner import Budget, Recorder
 from suite.scenes.catalogue import load_scene
 
 def compiled():
     kernels = [k for m in list(sys.modules.values()) for k in vars(m).values()
                if isinstance(k, CPUDispatcher)]
-    return {k.py_func.__qualname__: len(k.signatures) for k in kernels}
+    return {{k.py_func.__qualname__: len(k.signatures) for k in kernels}}
 
 scene, recorder = load_scene("clustered"), Recorder()
-KBGAPlanner().warm_up()
+{planner}.warm_up()
 before = compiled()
 recorder.start_clock()
-made = KBGAPlanner().plan(scene, scene.query(), Budget(), np.random.default_rng(0), recorder)
+made = {planner}.plan(scene, scene.query(), Budget(), np.random.default_rng(0), recorder)
 after = compiled()
 assert made.checks > 2048, "its table grows"
-print({name: n for name, n in after.items() if n != before[name]})
+print({{name: n for name, n in after.items() if n != before[name]}})
 """
     done = subprocess.run(
         [sys.executable, "-c", code],
