@@ -60,7 +60,7 @@ class KBGAPlanner(Planner[KBGASettings]):
         scene = make_scene(
             "warm-up",
             shapely.box(0.0, 0.0, 10.0, 10.0),
-            [shapely.box(4.0, 0.0, 6.0, 8.0)],
+            [shapely.box(4.0, 0.0, 6.0, 7.7)],  # its corners lie off the lattice
             {"main": ((1.0, 1.0), (9.0, 1.0))},
         )
         settings = replace(
