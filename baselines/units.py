@@ -45,6 +45,7 @@ def free_side(scene: Scene, query: Query) -> float:
 
     Examples
     --------
+    >>> import shapely
     >>> from suite.scenes.scene import make_scene
     >>> wall = shapely.box(4, 0, 5, 9)
     >>> room = make_scene("room", shapely.box(0, 0, 30, 9), [wall], {})

@@ -14,7 +14,11 @@ pytestmark = pytest.mark.skipif(MISSING, reason=REASON)
 
 ROOT = Path(__file__).parents[3]
 MATRIX = tomllib.loads((ROOT / "suite/harness/matrices/real-maps.toml").read_text("utf-8"))
-TUNED = {v["planner"]: v["settings"] for v in MATRIX["planner"] if v["planner"].startswith("ompl-")}
+TUNED = {
+    v["planner"]: v.get("settings", {})
+    for v in MATRIX["planner"]
+    if v["planner"].startswith("ompl-")
+}
 
 ORDINARY = ("ompl-aorrtc", "Denver_1_256.map@radius=0.3")
 """The one that died on such maps, before rooms were scaled; all others are slow tests."""
