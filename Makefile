@@ -71,7 +71,7 @@ LOAD ?= 8
 BUSY := import itertools, os; shell = os.getppid(); \
 	all(os.getppid() == shell for _ in itertools.repeat(0))
 test-loaded: setup-dev browser kernels
-	@busy=""; trap 'kill $$busy' EXIT; trap 'exit 130' INT TERM; \
+	@busy=""; trap '[ -z "$$busy" ] || kill $$busy' EXIT; trap 'exit 130' INT TERM; \
 	for _ in $$(seq $(LOAD)); do \
 		$(BIN)/python -c '$(BUSY)' & busy="$$busy $$!"; \
 	done; \
