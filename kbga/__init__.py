@@ -15,7 +15,7 @@ Y. Hu and S. X. Yang, "A Novel Knowledge-Based Genetic Algorithm for Robot Path 
 Environments", sections II-A to II-D, the parameters and the dynamic environments of III, and the
 future work of V. A row with a section is what the paper says. "silent": the paper is, and both
 planners have this choice. "kbga": a choice of the paper's algorithm as we read it, and found by the
-search in results/readings. "plus": what only kbga-plus does, our own. "off": ours, off in both.
+search in results/readings. "plus": what only kbga-plus does, our own.
 
 =======  ============================================  ============================================
 paper    what it says                                  what carries it out
@@ -129,7 +129,7 @@ kbga     the free nodes next to its corners, or all    kbga.problem.near_count
          them are tried; whether a repair that costs   KBGASettings.repair_candidates
          more is kept; of several obstacles hit, a     KBGASettings.repair_must_help
          random one
-plus     twelve of them are tried                      KBGAPlusSettings.repair_candidates
+plus     all of them are tried, 200 at the most        KBGAPlusSettings.repair_candidates
 plus     a repair makes a path longer: one that is     KBGAPlusSettings.repair_limit
          too long already is left as it is             KBGASettings.repair_limit
 II-C     deletion: for feasible and infeasible paths;  kbga.operators.deletion.delete
@@ -181,8 +181,6 @@ II-D     the end: a number of generations is over, or  KBGA.run
 silent   both numbers; and the best counts as          KBGASettings.max_generations
          unchanged only once it is feasible: before,   KBGASettings.stagnation
          more generations are all that helps
-plus     half as many generations without a better     KBGAPlusSettings.stagnation
-         one
 II-D     a dynamic environment: what is sensed is      kbga.plugin.KBGAReplanner
          checked after a period                        suite.planner.Replanner.update
 II-D     if the environment changed, the population    KBGA.go_on
@@ -195,7 +193,7 @@ silent   at the rate of the other operators, once;     KBGASettings.change_mutat
 II-D     from then on it evolves for the new           KBGA.run
          environment
 silent   until the same stop criteria, counted from    KBGA.go_on
-         the change; the best feasible path is put     kbga.dynamic.put_path
+         the change; the best feasible path is put
          first, as cheaper infeasible ones may have
          driven it out
 III      population size 50                            KBGASettings.population_size
@@ -220,13 +218,16 @@ V        future work: a first population built with    KBGASettings.informed_sha
          knowledge of the domain                       kbga.evolution.first_population
 V        future work: probabilities of the operators   KBGASettings.adaptation_rate
          tuned on-line                                 kbga.tuning.tuned
-off      feasible paths are pulled taut, and leave     KBGASettings.taut
+plus     sharp corners of obstacles are nodes too      KBGASettings.corner_nodes
+                                                       kbga.problem.near_count
+plus     feasible paths are pulled taut, and leave     KBGASettings.taut
          the lattice for corners                       kbga.taut.pull_taut
-off      new random chromosomes, while nothing better  KBGASettings.immigrants
+plus     new random chromosomes, while nothing better  KBGASettings.immigrants
          is found
-off      the lattice lies over what can be reached     KBGASettings.lattice_over
+plus     the lattice lies over what can be reached,    KBGASettings.lattice_over
+         and is a finer one                            KBGASettings.resolution
                                                        suite.scenes.reach.reachable_bounds
-off      that there is no way is told at once          KBGASettings.proves
+plus     that there is no way is told at once          KBGASettings.proves
                                                        suite.scenes.reach.no_way
 =======  ============================================  ============================================
 """

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from kbga.counter import ASKED, COMPUTED, LIMIT, is_spent, make_counter
 from kbga.draws import LEAST_BLOCK, Draws, left_of, make_draws, refill
-from kbga.dynamic import disturb, genes_of, most_draws_of_disturbance, put_path, restart
+from kbga.dynamic import disturb, most_draws_of_disturbance, renumber_corners, restart
 from kbga.encoding import Population, copy_chromosome, empty_population, path_of
 from kbga.evolution import (
     best_feasible,
@@ -111,8 +111,8 @@ class KBGA:
         self.best_path: NDArray[np.float64] | None = None
         self.best_cost = float("inf")
         self.generation_of_best = 0
-        self._best_on_lattice: NDArray[np.float64] | None = None
-        self._least_on_lattice = float("inf")
+        self._best_chromosome = empty_population(1, settings.max_nodes)
+        self._least_cost = float("inf")
         self.lowest_cost = float("inf")
         self.generation_of_lowest = 0
         self._reports: dict[int, GenerationReport] = {}
@@ -188,7 +188,7 @@ class KBGA:
                 self.population,
                 self._children,
                 before,
-                self._least_on_lattice,
+                self._least_cost,
                 self._scratch,
                 self._problem,
                 self._rates,
@@ -216,11 +216,11 @@ class KBGA:
         """Note the best feasible path among some chromosomes if it is a better one; whether."""
         best = best_feasible(population, first, last)
         path, cost = None, self.best_cost
-        if best >= 0 and population.chromosomes["cost"][best] < self._least_on_lattice:
-            self._best_on_lattice = path_of(population, best)
-            self._least_on_lattice = float(population.chromosomes["cost"][best])
-            if self._least_on_lattice < cost:
-                path, cost = self._best_on_lattice, self._least_on_lattice
+        if best >= 0 and population.chromosomes["cost"][best] < self._least_cost:
+            copy_chromosome(population, best, self._best_chromosome, 0)
+            self._least_cost = float(population.chromosomes["cost"][best])
+            if self._least_cost < cost:
+                path, cost = path_of(population, best), self._least_cost
         if best >= 0 and self.settings.taut:
             pulled = self._pull_taut(population, first, last, cost)
             if pulled is not None:
@@ -305,14 +305,16 @@ class KBGA:
         rest = self._rest()
         self._keep_best_path()
         if changed:
+            before = self._problem.lattice
             self._problem = self._problem_of(scene)
+            renumber_corners(self.population, before, self._problem.lattice)
             self._scratch = scratch_for(self._problem, self.settings)
         else:  # segments that begin at the start are others now
             self._problem = self._problem._replace(memory=empty_memory())
         self._counter[:] = make_counter(checks)
         self.generation = self.generation_of_best = self.generation_of_lowest = 0
         self.best_path, self.best_cost, self.lowest_cost = None, float("inf"), float("inf")
-        self._best_on_lattice, self._least_on_lattice = None, float("inf")
+        self._least_cost = float("inf")
         self._reports.clear()
         x, y = (float(v) for v in start)  # of one type each, whatever the array's
         penalty = self._rates.penalty
@@ -350,13 +352,11 @@ class KBGA:
 
         The population may have lost it to infeasible ones that cost less.
         """
-        path = self._best_on_lattice
-        if path is None:
+        if self._least_cost == float("inf"):
             return
         worst = int(self.population.chromosomes["cost"].argmax())
         copy_chromosome(self.population, 0, self.population, worst)
-        lattice = self._problem.lattice
-        put_path(self.population, 0, genes_of(path, lattice), path[[0, -1]], lattice)
+        copy_chromosome(self._best_chromosome, 0, self.population, 0)
 
     def _disturb(self) -> None:
         best = best_feasible(self.population, 0, self._size)
@@ -380,6 +380,7 @@ class KBGA:
             room=scene.workspace if self._bounds == scene.bounds else None,
             coordinates=scene.coordinates,
             reach=int(self.settings.repair_reach),
+            corner_nodes=self.settings.corner_nodes,
         )
 
     @property

@@ -8,13 +8,13 @@ import numpy as np
 
 from kbga.draws import Draws, draw
 from kbga.encoding import (
-    GOAL,
     START,
     Lattice,
     Population,
     close_columns,
     distance_to_segment,
     forget,
+    nearest_crossing,
     set_node,
 )
 from kbga.evaluation import evaluate_segment, sum_up
@@ -64,34 +64,31 @@ def _nearest_segment(nodes: np.ndarray, i: int, size: int, x: float, y: float) -
     return nearest
 
 
-@kernel
-def put_path(
-    population: Population,
-    i: int,
-    genes: np.ndarray,
-    ends: np.ndarray,
-    lattice: Lattice,
-) -> None:
-    """Write a path over chromosome i: it is to be evaluated after.
+def renumber_corners(population: Population, before: Lattice, lattice: Lattice) -> None:
+    """Give nodes at corners of obstacles the numbers that these have in a changed environment.
 
-    genes : (k,) int64, lattice numbers of its intermediate nodes.
-    ends : (2, 2), start and goal, metres.
+    One whose corner is no longer there moves to the nearest crossing of the lattice (ours).
+
+    Parameters
+    ----------
+    population : Population
+        To be evaluated after.
+    before, lattice : Lattice
+        Of the environment as it was and as it is, with the same crossings.
     """
+    crossings = lattice.columns * lattice.rows
+    if not len(before.corners):
+        return
+    numbers = {(x, y): crossings + n for n, (x, y) in enumerate(lattice.corners.tolist())}
     nodes = population.nodes
-    size = genes.size
-    nodes[i, 0].gene, nodes[i, 0].x, nodes[i, 0].y = START, ends[0, 0], ends[0, 1]
-    for k in range(size):
-        set_node(nodes, i, k + 1, genes[k], lattice)
-    nodes[i, size + 1].gene = GOAL
-    nodes[i, size + 1].x, nodes[i, size + 1].y = ends[1, 0], ends[1, 1]
-    population.chromosomes[i].intermediate = size
-
-
-def genes_of(path: np.ndarray, lattice: Lattice) -> np.ndarray:
-    """Lattice numbers (k,), int64, of the intermediate nodes of a path (k + 2, 2) over it."""
-    columns = np.rint((path[1:-1, 0] - lattice.x0) / lattice.unit)
-    rows = np.rint((path[1:-1, 1] - lattice.y0) / lattice.unit)
-    return (rows * lattice.columns + columns).astype(np.int64)
+    columns = np.arange(nodes.shape[1]) <= population.chromosomes["intermediate"][:, None]
+    for i, k in np.argwhere((nodes["gene"] >= crossings) & columns):
+        x, y = float(nodes["x"][i, k]), float(nodes["y"][i, k])
+        gene = numbers.get((x, y))
+        if gene is None:
+            set_node(nodes, i, k, nearest_crossing(lattice, x, y), lattice)
+        else:
+            nodes["gene"][i, k] = gene
 
 
 def most_draws_of_disturbance(population_size: int) -> int:

@@ -31,6 +31,8 @@ class Lattice(NamedTuple):
     xs, ys : (columns,), (rows,) float64, where the lines lie, on the grid of the obstacles, metres:
         a node on a wall or on the border stays there. 0.1 * 3 lies 5e-17 beyond 0.3, which would
         be inside an obstacle that begins there.
+    corners : (K, 2) float64, metres: corners of obstacles that are nodes too (ours), numbered on
+        from the last crossing. None, in the paper's algorithm.
     """
 
     x0: float
@@ -40,6 +42,7 @@ class Lattice(NamedTuple):
     rows: int
     xs: NDArray[np.float64]
     ys: NDArray[np.float64]
+    corners: NDArray[np.float64]
 
 
 def make_lattice(
@@ -47,6 +50,7 @@ def make_lattice(
     resolution: int,
     area: float | None = None,
     coordinates: Coordinates | None = None,
+    corners: NDArray[np.float64] | None = None,
 ) -> Lattice:
     """Lay a lattice over a workspace.
 
@@ -60,6 +64,7 @@ def make_lattice(
     resolution : units per side of a square of that area.
     area : float, of the workspace, square metres; default: it fills its bounds.
     coordinates : of the scene, whose grid the lines keep to; default: those of these bounds.
+    corners : (K, 2) float64, metres, of obstacles, which are to be nodes too; default: none.
     """
     xmin, ymin, xmax, ymax = bounds
     width, height = xmax - xmin, ymax - ymin
@@ -74,19 +79,35 @@ def make_lattice(
     xs, ys = np.array(places[:columns, 0]), np.array(places[:rows, 1])
     xs.setflags(write=False)
     ys.setflags(write=False)
-    return Lattice(xmin, ymin, unit, columns, rows, xs, ys)
+    corners = np.empty((0, 2)) if corners is None else corners
+    return Lattice(xmin, ymin, unit, columns, rows, xs, ys, corners)
 
 
 @kernel
 def node_x(lattice: Lattice, node: int) -> float:
     """Coordinate x of a lattice number, metres."""
-    return lattice.xs[node % lattice.columns]
+    corner = node - lattice.columns * lattice.rows
+    return lattice.xs[node % lattice.columns] if corner < 0 else lattice.corners[corner, 0]
 
 
 @kernel
 def node_y(lattice: Lattice, node: int) -> float:
     """Coordinate y of a lattice number, metres."""
-    return lattice.ys[node // lattice.columns]
+    corner = node - lattice.columns * lattice.rows
+    return lattice.ys[node // lattice.columns] if corner < 0 else lattice.corners[corner, 1]
+
+
+def nearest_crossing(lattice: Lattice, x: float, y: float) -> int:
+    """Lattice number of the crossing that is nearest to a place, metres."""
+    column = min(max(round((x - lattice.x0) / lattice.unit), 0), lattice.columns - 1)
+    row = min(max(round((y - lattice.y0) / lattice.unit), 0), lattice.rows - 1)
+    return row * lattice.columns + column
+
+
+@kernel
+def is_crossing(lattice: Lattice, node: int) -> bool:
+    """Whether a lattice number is that of a crossing, which has neighbours; else of a corner."""
+    return node < lattice.columns * lattice.rows
 
 
 @kernel

@@ -65,6 +65,7 @@ class KBGAPlanner(Planner[KBGASettings]):
         )
         settings = replace(
             self.settings,
+            corner_nodes=False,  # the same kernels; at corners nothing would be pulled taut
             resolution=10,
             population_size=10,
             max_generations=10,

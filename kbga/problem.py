@@ -30,6 +30,10 @@ MOST_NEAR = 16
 """Lattice nodes next to one corner: those of its cell and of the cells around it."""
 
 NOT_LOOKED_FOR = -1
+NO_NODE = -1
+
+SHARP = np.radians(10.0)
+"""Turn from which on a corner is sharp: a grown corner has an arc of 48 sides to the circle."""
 
 
 class Problem(NamedTuple):
@@ -40,13 +44,15 @@ class Problem(NamedTuple):
     places : (n,) int64, the lattice nodes in the workspace; empty where that fills its bounds, and
         all are.
     corners : (K, 2) float64, corners of the obstacle groups, group by group, metres.
+    corner_nodes : (K,) int64, numbers of those that are nodes themselves: sharp ones, if they are
+        to be nodes; else NO_NODE.
     corner_start : (G + 1,) int64, rows of ``corners`` where each group begins.
     reach : int. Nodes near a group are those within so many units of its boundary; 0: those next
         to its corners.
-    near : (N,) int64, free lattice nodes near each group, from ``near_start[g]`` on.
+    near : (N,) int64, free nodes near each group, from ``near_start[g]`` on.
     near_start : (G + 1,) int64.
     near_count : (G,) int64, how many nodes there are; NOT_LOOKED_FOR before they are found.
-    usable : (nodes,) int8, what is known of each lattice node: UNKNOWN, USABLE or CLOSED.
+    usable : (nodes,) int8, what is known of each node: UNKNOWN, USABLE or CLOSED.
     memory : what is known of segments, see :mod:`kbga.memory`. It and ``usable`` fill up during a
         run; all else stays as it is.
     """
@@ -55,6 +61,7 @@ class Problem(NamedTuple):
     lattice: Lattice
     places: NDArray[np.int64]
     corners: NDArray[np.float64]
+    corner_nodes: NDArray[np.int64]
     corner_start: NDArray[np.int64]
     reach: int
     near: NDArray[np.int64]
@@ -72,6 +79,7 @@ def make_problem(
     room: shapely.Polygon | None = None,
     reach: int = 0,
     coordinates: Coordinates | None = None,
+    corner_nodes: bool = False,
 ) -> Problem:
     """Lay the lattice over a scene.
 
@@ -86,12 +94,14 @@ def make_problem(
         Of the search for nodes near an obstacle, lattice units; 0: next to its corners.
     coordinates : Coordinates
         Of the scene; default: those of a workspace of these bounds.
+    corner_nodes : bool
+        Whether corners of obstacles are nodes too.
     """
     area = None if room is None else room.area
-    lattice = make_lattice(bounds, resolution, area, coordinates)
     groups = len(arrangement.arrays.groups)
     # Always a copy: a view would be read-only where there are no corners, another type to numba.
     corners = np.array(arrangement.corners[:, :2], order="C")
+    lattice = make_lattice(bounds, resolution, area, coordinates, corners if corner_nodes else None)
     corner_start = np.searchsorted(arrangement.corner_group, np.arange(groups + 1))
     if reach == 0:
         near_start = MOST_NEAR * corner_start
@@ -102,14 +112,42 @@ def make_problem(
         lattice,
         _places(lattice, bounds, room),
         corners,
+        _numbers_of_corners(arrangement.corners, lattice),
         corner_start,
         int(reach),
         np.empty(near_start[-1], np.int64),
         near_start,
         np.full(groups, NOT_LOOKED_FOR),
-        np.zeros(lattice.columns * lattice.rows, np.int8),
+        np.zeros(lattice.columns * lattice.rows + len(lattice.corners), np.int8),
         empty_memory(),
     )
+
+
+def _numbers_of_corners(corners: NDArray[np.float64], lattice: Lattice) -> NDArray[np.int64]:
+    """Numbers of the nodes that corners (K, 6) are; of a crossing, where a corner lies on one."""
+    numbers = np.full(len(corners), NO_NODE)
+    if len(lattice.corners):
+        sharp = np.flatnonzero(_are_sharp(corners))
+        x, y = corners[sharp, :2].T
+        column = _nearest(lattice.xs, (x - lattice.x0) / lattice.unit)
+        row = _nearest(lattice.ys, (y - lattice.y0) / lattice.unit)
+        is_on_one = (lattice.xs[column] == x) & (lattice.ys[row] == y)
+        own = lattice.columns * lattice.rows + sharp
+        numbers[sharp] = np.where(is_on_one, row * lattice.columns + column, own)
+    return numbers
+
+
+def _nearest(lines: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Numbers of the lines nearest to places, which are given in units from the first one."""
+    return np.clip(np.rint(places), 0, len(lines) - 1).astype(np.int64)
+
+
+def _are_sharp(corners: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which corners (K, 6), with the ends of their edges, turn by SHARP or more: (K,) bool."""
+    before, after = corners[:, :2] - corners[:, 2:4], corners[:, 4:] - corners[:, :2]
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    dot = (before * after).sum(axis=1)
+    return np.abs(np.arctan2(cross, dot)) >= SHARP
 
 
 def _places(
@@ -177,7 +215,8 @@ def is_known_usable(node: int, problem: Problem) -> bool:
 def near_count(group: int, problem: Problem) -> int:
     """How many free nodes lie near an obstacle group; finds them if need be.
 
-    The paper's "neighboring grids of the intersected obstacle" (II-C).
+    The paper's "neighboring grids of the intersected obstacle" (II-C); or its corners themselves,
+    where these are nodes and sharp (ours).
     """
     if problem.near_count[group] == NOT_LOOKED_FOR:
         if problem.reach > 0:
@@ -241,10 +280,20 @@ def _find_at_corners(group: int, problem: Problem) -> int:
     Of each corner, those are the crossings of the lattice cell that holds it; where they are closed
     or those of another corner already, of the cells around it too. Shortest paths bend at corners
     only.
+
+    A sharp corner that is a node itself needs none beside it. Of a round one, a few crossings stand
+    for many corners.
     """
-    first = problem.near_start[group]
+    first, near = problem.near_start[group], problem.near
     count = 0
     for corner in range(problem.corner_start[group], problem.corner_start[group + 1]):
+        own = problem.corner_nodes[corner]
+        if own >= 0:
+            if problem.usable[own] < LISTED and is_known_usable(own, problem):
+                problem.usable[own] += LISTED
+                near[first + count] = own
+                count += 1
+            continue
         found = _add_near_corner(problem, corner, 0, first, count)
         if found == count:
             found = _add_near_corner(problem, corner, 1, first, count)

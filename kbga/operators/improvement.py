@@ -3,7 +3,7 @@
 import numpy as np
 
 from kbga.draws import Draws, draw
-from kbga.encoding import Population, contains, forget, set_node
+from kbga.encoding import Population, contains, forget, is_crossing, set_node
 from kbga.evaluation import is_free_segment, sum_up
 from kbga.operators.detour import Scratch, bring_shortest_forward, list_candidate
 from kbga.problem import Problem, is_known_usable
@@ -109,7 +109,8 @@ def improve(
 
     One step to the best neighbour; or a pattern search over the neighbours: steps that help are
     doubled, up to ``improvement_radius`` lattice units, others halved, until a step of one unit
-    does not help. A node without a better neighbour is settled until a neighbour changes.
+    does not help. A node without a better neighbour is settled until a neighbour changes. One at
+    the corner of an obstacle has no neighbours, and stays.
     """
     size = population.chromosomes[i].intermediate
     if population.chromosomes[i].infeasible > 0:
@@ -117,6 +118,9 @@ def improve(
     nodes = population.nodes
     k = _random_node(nodes, i, size, draws)
     if k == 0:
+        return False
+    if not is_crossing(problem.lattice, nodes[i, k].gene):
+        nodes[i, k].settled = 1
         return False
     step = 1
     moved = False

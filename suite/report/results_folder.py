@@ -102,7 +102,8 @@ def write_results(
     tables = read_tables(store)
     files = write_tables([t for t in tables if not t.detail], folder, TableFormat.MARKDOWN)
     files += write_tables(tables, folder, TableFormat.CSV)
-    files += export_rows(store, made_folder(folder / "rows"), "parquet", leave_out=leave_out)
+    rows = made_folder(folder / "rows")
+    files += export_rows(store, rows, "parquet", leave_out=leave_out, names_only=True)
     for name, figure in _figures(store, shown, kept, scenes, leave_out):
         file = folder / f"{name}{figures.suffix}"
         save(figure, file)
@@ -250,7 +251,9 @@ def _manifest(
 ) -> dict[str, Any]:
     sessions = read_sessions(store)
     matrices = list(dict.fromkeys(session["matrix"] for session in sessions))
-    commands = [f"kbga-bench run {matrix} --store STORE" for matrix in matrices]
+    in_files = runs["scene_source"].map(lambda source: Path(source).name != source)
+    maps = " --maps MAPS" if (is_of_map(runs) & in_files).any() else ""
+    commands = [f"kbga-bench run {matrix}{maps} --store STORE" for matrix in matrices]
     options = "".join(f" --leave-out {kind}" for kind in sorted(leave_out))
     return {
         "made_by": [*commands, f"kbga-bench results STORE {folder.name}{options}"],

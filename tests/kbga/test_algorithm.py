@@ -143,7 +143,8 @@ def test_without_obstacles_it_finds_the_straight_line(max_nodes, resolution):
     ga = evolve(scene_of(), settings)
     assert ga.best_cost == pytest.approx(8 * np.sqrt(2))
     assert ga.best_path is not None
-    assert ga.best_path.tolist() in ([[1, 1], [9, 9]], [[1, 1], [5, 5], [9, 9]])
+    assert len(ga.best_path) <= 3  # a node on the line makes it no longer
+    assert (np.abs(ga.best_path[:, 0] - ga.best_path[:, 1]) <= 1e-9).all()
 
 
 def test_from_the_start_to_the_start_it_stays():

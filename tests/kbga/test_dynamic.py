@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import box
 
-from kbga import KBGA, KBGASettings
-from kbga.dynamic import disturb, genes_of, put_path, restart
-from kbga.encoding import path_of
+from kbga import KBGA, KBGAPlusSettings, KBGASettings
+from kbga.dynamic import disturb, renumber_corners, restart
+from kbga.encoding import is_crossing, make_lattice, node_x, node_y, path_of
 from kbga.evolution import best_feasible
 from kbga.memory import empty_memory
 from kbga.plugin import KBGAPlanner
@@ -82,12 +82,45 @@ def test_the_spared_chromosome_is_not_disturbed_and_records_stay_true(seed):
     check(lab)
 
 
-def test_a_path_that_is_put_back_is_the_path():
-    ga = evolved(scene_of(WALL))
-    lattice = ga._problem.lattice
-    path = best(ga)
-    put_path(ga.population, 7, genes_of(path, lattice), path[[0, -1]], lattice)
-    assert np.array_equal(path_of(ga.population, 7), path)
+@given(SEEDS)
+def test_a_corner_keeps_its_place_in_a_changed_environment_or_moves_to_the_lattice(seed):
+    rng = np.random.default_rng(seed)
+    bounds = (0.0, 0.0, 10.0, 10.0)
+    before = make_lattice(bounds, 10, corners=rng.uniform(0.0, 10.0, (6, 2)))
+    kept = rng.permutation(6)[:3]
+    after = make_lattice(bounds, 10, corners=before.corners[kept])
+    lab = laboratory(scene_of(WALL), seed)
+    size = int(lab.population.chromosomes["intermediate"][0])
+    crossings = before.columns * before.rows
+    for k in range(1, size + 1):
+        corner = int(rng.integers(6))
+        lab.population.nodes["gene"][0, k] = crossings + corner
+        lab.population.nodes["x"][0, k], lab.population.nodes["y"][0, k] = before.corners[corner]
+    places = path_of(lab.population, 0)
+    renumber_corners(lab.population, before, after)
+    for k in range(1, size + 1):
+        gene, place = lab.genes(0)[k - 1], path_of(lab.population, 0)[k]
+        assert place.tolist() == [node_x(after, gene), node_y(after, gene)]
+        if is_crossing(after, gene):
+            assert places[k].tolist() not in after.corners.tolist()
+            assert (np.abs(place - places[k]) <= 0.5 * after.unit).all()
+        else:
+            assert place.tolist() == places[k].tolist()
+
+
+def test_with_nodes_at_corners_a_robot_on_its_way_meets_new_and_moved_obstacles():
+    scenes = [scene_of(WALL), scene_of(WALL, box(3, 7, 5, 9.5)), scene_of(box(4.5, 0, 6, 8.25))]
+    ga = KBGA(scenes[0], settings=KBGAPlusSettings(lattice_over="room"), rng=1)
+    ga.run()
+    for scene, start in zip(
+        [*scenes[1:], scenes[0]], ((1.0, 2.0), (2.0, 3.0), (3.0, 3.5)), strict=True
+    ):
+        ga.go_on(scene, np.array(start))
+        path = ga.run()
+        query = Query("main", np.array(start), scene.query().goal)
+        assert judge(scene, query, path).valid
+        exact = shortest_path(scene, query).length
+        assert ga.best_cost == pytest.approx(exact, rel=1e-9)
 
 
 # Going on

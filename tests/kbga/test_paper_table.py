@@ -15,7 +15,7 @@ from kbga import operators as operators_package
 from tests.kbga.laboratory import scene_of
 
 SECTIONS = ["II-A", "II-B", "II-C", "II-D", "III", "V"]
-CHOICES = {"silent", "kbga", "plus", "off"}
+CHOICES = {"silent", "kbga", "plus"}
 """Rows that are not the paper's: of both planners, of the paper's as we read it, and of ours."""
 
 

@@ -1,12 +1,23 @@
 """What is found about an environment before evolution: free nodes next to its corners."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kbga.algorithm import KBGA
-from kbga.problem import MOST_NEAR, Problem, is_known_usable, is_usable, make_problem
+from kbga.encoding import is_crossing, node_x, node_y
+from kbga.problem import (
+    MOST_NEAR,
+    NO_NODE,
+    Problem,
+    is_known_usable,
+    is_usable,
+    make_problem,
+)
 from kbga.settings import KBGAPlusSettings
 from suite.geometry.arrangement import arrange
 from suite.geometry.kernels import FIRST_EDGE, LAST_EDGE
@@ -43,6 +54,30 @@ def test_nodes_near_an_obstacle_are_free_and_next_to_its_corners(seed, resolutio
             assert not shapely.contains_xy(solid, *place)
             assert tuple(place) not in bad
             assert (np.abs(corners - place) / cell < 2.0 + 1e-9).all(axis=1).any()
+
+
+@settings(max_examples=counts(40, 5))
+@given(st.integers(0, 2**32), st.sampled_from([2, 5, 16]))
+def test_corners_that_are_nodes_stand_for_themselves_and_no_crossing_beside_them(seed, resolution):
+    scene = random_scene(np.random.default_rng(seed))
+    problem = make_problem(scene.arrangement, scene.bounds, resolution, corner_nodes=True)
+    lattice, corners = problem.lattice, scene.arrangement.corners[:, :2]
+    bad = {(p.x, p.y) for p, _ in pinches(scene.arrangement.solid)}
+    for group in range(len(problem.arrays.groups)):
+        found = [(node_x(lattice, n), node_y(lattice, n)) for n in near_nodes(problem, group)]
+        own = corners[scene.arrangement.corner_group == group]
+        assert sorted(found) == sorted(c for c in map(tuple, own.tolist()) if c not in bad)
+
+
+@pytest.mark.parametrize(("sides", "are_sharp"), [(4, True), (24, True), (48, False)])
+def test_the_corners_of_a_polygon_are_sharp_but_those_of_an_arc_are_not(sides, are_sharp):
+    turn = 2.0 * np.pi * np.arange(sides) / sides
+    scene = scene_of(shapely.Polygon(np.column_stack([5 + np.cos(turn), 5 + np.sin(turn)])))
+    problem = make_problem(scene.arrangement, scene.bounds, 20, corner_nodes=True)
+    assert ((problem.corner_nodes[:sides] != NO_NODE) == are_sharp).all()
+    crossings = [is_crossing(problem.lattice, n) for n in near_nodes(problem, 0)]
+    assert sum(not found for found in crossings) >= (sides - 4 if are_sharp else 0)
+    assert are_sharp or all(crossings)
 
 
 @settings(max_examples=counts(40, 5))
@@ -154,11 +189,19 @@ def test_where_no_node_is_free_there_is_none_near_and_a_run_goes_on_all_the_same
     assert not any(is_usable(n, problem.arrays, problem.lattice) for n in range(9))
     assert all_near_nodes(problem) == []
     chosen = KBGAPlusSettings(
-        resolution=2, population_size=6, max_generations=5, informed_share=0.5
+        resolution=2,
+        population_size=6,
+        max_generations=5,
+        informed_share=0.5,
+        corner_nodes=False,
+        lattice_over="room",
     )
     ga = KBGA(scene, settings=chosen, rng=0)
     assert ga.run() is None
     assert ga.generation == 5
+    around = KBGA(scene, settings=replace(chosen, corner_nodes=True), rng=0).run()
+    assert around is not None
+    assert set(map(tuple, around[1:-1].tolist())) <= {(4, 4), (4, 6), (6, 4), (6, 6)}
 
 
 @settings(max_examples=counts(20, 3))

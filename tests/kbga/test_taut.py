@@ -20,12 +20,14 @@ from tests.suite.geometry.lattice import counts
 
 SEEDS = st.integers(0, 2**32)
 
-PULLING = {"taut": 1.1, "immigrants": 0.5, "lattice_over": "region"}
+ON_LATTICE = {"corner_nodes": False, "taut": 0.0}
 
 
 def feasible_paths(scene: Scene, seed: int) -> list[np.ndarray]:
     """What a population has after three generations: paths with knots, detours and repeats."""
-    ga = KBGA(scene, settings=KBGAPlusSettings(resolution=20, population_size=12), rng=seed)
+    ga = KBGA(
+        scene, settings=KBGAPlusSettings(resolution=20, population_size=12, **ON_LATTICE), rng=seed
+    )
     for _ in range(3):
         ga.step()
     return [path for path in ga.paths() if first_collision(path, scene.arrays) < 0]
@@ -76,7 +78,7 @@ def test_it_is_the_shortest_of_its_route(name):
 def feasible_paths_of_the_plus(scene: Scene) -> list[np.ndarray]:
     found = []
     for seed in range(4):
-        ga = KBGA(scene, settings=KBGAPlusSettings(max_generations=3), rng=seed)
+        ga = KBGA(scene, settings=KBGAPlusSettings(max_generations=3, **ON_LATTICE), rng=seed)
         ga.run()
         found += [path for path in ga.paths() if first_collision(path, scene.arrays) < 0]
     return found
@@ -98,7 +100,7 @@ def test_a_path_through_its_own_start_is_cut_short():
 
 def test_no_more_is_asked_than_may_be():
     scene = load_scene("zigzag")
-    ga = KBGA(scene, settings=KBGAPlusSettings(), rng=1)
+    ga = KBGA(scene, settings=KBGAPlusSettings(**ON_LATTICE), rng=1)
     path = ga.run()
     lengths = []
     for limit in range(60):
@@ -120,9 +122,9 @@ def test_the_rest_of_a_path_begins_where_the_robot_is():
 
 
 @pytest.mark.parametrize("name", ["maze", "clustered", "obstacles_30@twin=4"])
-def test_kbga_plus_that_pulls_ends_at_the_optimum(name):
+def test_kbga_plus_ends_at_the_optimum(name):
     scene = load_scene(name)
-    ga = KBGA(scene, settings=KBGAPlusSettings(resolution=150, **PULLING), rng=1)
+    ga = KBGA(scene, settings=KBGAPlusSettings(), rng=1)
     path = ga.run()
     assert path_length(path) == ga.best_cost
     assert first_collision(path, scene.arrays) < 0
@@ -131,7 +133,7 @@ def test_kbga_plus_that_pulls_ends_at_the_optimum(name):
 
 def test_one_seed_gives_one_path_and_nobody_asks_more_than_the_budget():
     scene = load_scene("obstacles_40")
-    chosen = KBGAPlusSettings(**PULLING)
+    chosen = KBGAPlusSettings()
     runs = [KBGA(scene, settings=chosen, rng=5, checks=3_000) for _ in range(2)]
     first, second = (ga.run() for ga in runs)
     assert first.tolist() == second.tolist()

@@ -29,7 +29,12 @@ LEVEL: Final = 19
 
 
 def export_rows(
-    store: Path, directory: Path, kind: str, *, leave_out: Collection[str] = ()
+    store: Path,
+    directory: Path,
+    kind: str,
+    *,
+    leave_out: Collection[str] = (),
+    names_only: bool = False,
 ) -> list[Path]:
     """Write runs, events, traces and paths, simulations and replans, a file each.
 
@@ -42,6 +47,9 @@ def export_rows(
         ``parquet`` or ``csv``.
     leave_out : collection of str
         Kinds of rows that are not written: ``events``, ``traces``, ``paths``.
+    names_only : bool
+        Whether a scene's file is named without its folder: rows that are published say nothing of
+        the machine.
 
     Returns
     -------
@@ -71,6 +79,8 @@ def export_rows(
         frame = read(store)
         if frame.empty and name in OF_SIMULATIONS:
             continue
+        if names_only and "scene_source" in frame:
+            frame = frame.assign(scene_source=[Path(s).name for s in frame["scene_source"]])
         file = folder / f"{name}.{kind}"
         with writing(file, StoreError):
             if kind == "parquet":

@@ -1,5 +1,8 @@
 """A results folder of a map: one picture of it, one of its queries, one CSV query by query."""
 
+import json
+from pathlib import Path
+
 import pandas as pd
 import pytest
 
@@ -33,3 +36,10 @@ def test_every_other_table_is_short(files):
     tables = [file for name, file in files.items() if name.endswith(".csv")]
     long = [file.name for file in tables if len(pd.read_csv(file)) >= QUERIES * PLANNERS]
     assert long == ["queries.csv"]
+
+
+def test_the_rows_name_no_folder_and_the_manifest_says_where_maps_come_in(files):
+    sources = pd.read_parquet(files["runs.parquet"])["scene_source"]
+    assert set(sources) == {Path(source).name for source in sources}
+    made_by = json.loads(files["manifest.json"].read_text())["made_by"]
+    assert made_by[0].endswith(" --maps MAPS --store STORE")
