@@ -64,13 +64,10 @@ class KBGAPlanner(Planner[KBGASettings]):
             {"main": ((1.0, 1.0), (9.0, 1.0))},
         )
         settings = replace(
-            self.settings,
-            corner_nodes=False,  # the same kernels; at corners nothing would be pulled taut
-            resolution=10,
-            population_size=10,
-            max_generations=10,
-            stagnation=10,
+            self.settings, resolution=10, population_size=10, max_generations=10, stagnation=10
         )
+        KBGA(scene, scene.query(), settings, np.random.default_rng(0))
+        settings = replace(settings, corner_nodes=False)  # at corners nothing would be pulled taut
         ga = KBGA(scene, scene.query(), settings, np.random.default_rng(0))
         ga.run(lambda ga, _: ga.report().generation < 10)
         # Another object, so that the environment has changed.

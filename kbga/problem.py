@@ -3,6 +3,7 @@
 Of what follows from the obstacles, only that is found out which a run asks for.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -32,8 +33,8 @@ MOST_NEAR = 16
 NOT_LOOKED_FOR = -1
 NO_NODE = -1
 
-SHARP = np.radians(10.0)
-"""Turn from which on a corner is sharp: a grown corner has an arc of 48 sides to the circle."""
+TAN_SHARP = math.tan(math.radians(10.0))
+"""Of the turn from which on a corner is sharp: a grown corner has an arc of 48 sides a circle."""
 
 
 class Problem(NamedTuple):
@@ -102,6 +103,9 @@ def make_problem(
     # Always a copy: a view would be read-only where there are no corners, another type to numba.
     corners = np.array(arrangement.corners[:, :2], order="C")
     lattice = make_lattice(bounds, resolution, area, coordinates, corners if corner_nodes else None)
+    numbers = np.full(len(corners), NO_NODE)
+    if corner_nodes:
+        _number_corners(arrangement.corners, lattice, numbers)
     corner_start = np.searchsorted(arrangement.corner_group, np.arange(groups + 1))
     if reach == 0:
         near_start = MOST_NEAR * corner_start
@@ -112,7 +116,7 @@ def make_problem(
         lattice,
         _places(lattice, bounds, room),
         corners,
-        _numbers_of_corners(arrangement.corners, lattice),
+        numbers,
         corner_start,
         int(reach),
         np.empty(near_start[-1], np.int64),
@@ -123,31 +127,40 @@ def make_problem(
     )
 
 
-def _numbers_of_corners(corners: NDArray[np.float64], lattice: Lattice) -> NDArray[np.int64]:
-    """Numbers of the nodes that corners (K, 6) are; of a crossing, where a corner lies on one."""
-    numbers = np.full(len(corners), NO_NODE)
-    if len(lattice.corners):
-        sharp = np.flatnonzero(_are_sharp(corners))
-        x, y = corners[sharp, :2].T
+@kernel
+def _number_corners(
+    corners: NDArray[np.float64], lattice: Lattice, numbers: NDArray[np.int64]
+) -> None:
+    """Note in ``numbers`` which nodes the sharp ones of corners (K, 6) are.
+
+    Where a corner lies on a crossing of the lattice, the two are one node.
+    """
+    for corner in range(len(corners)):
+        if not _is_sharp(corners[corner]):
+            continue
+        x, y = corners[corner, 0], corners[corner, 1]
         column = _nearest(lattice.xs, (x - lattice.x0) / lattice.unit)
         row = _nearest(lattice.ys, (y - lattice.y0) / lattice.unit)
-        is_on_one = (lattice.xs[column] == x) & (lattice.ys[row] == y)
-        own = lattice.columns * lattice.rows + sharp
-        numbers[sharp] = np.where(is_on_one, row * lattice.columns + column, own)
-    return numbers
+        if lattice.xs[column] == x and lattice.ys[row] == y:
+            numbers[corner] = row * lattice.columns + column
+        else:
+            numbers[corner] = lattice.columns * lattice.rows + corner
 
 
-def _nearest(lines: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Numbers of the lines nearest to places, which are given in units from the first one."""
-    return np.clip(np.rint(places), 0, len(lines) - 1).astype(np.int64)
+@kernel
+def _nearest(lines: NDArray[np.float64], place: float) -> int:
+    """Number of the line nearest to a place, which is given in units from the first one."""
+    return min(max(int(np.rint(place)), 0), lines.size - 1)
 
 
-def _are_sharp(corners: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which corners (K, 6), with the ends of their edges, turn by SHARP or more: (K,) bool."""
-    before, after = corners[:, :2] - corners[:, 2:4], corners[:, 4:] - corners[:, :2]
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    dot = (before * after).sum(axis=1)
-    return np.abs(np.arctan2(cross, dot)) >= SHARP
+@kernel
+def _is_sharp(corner: NDArray[np.float64]) -> bool:
+    """Whether a corner (6,), with the ends of its edges, turns by SHARP or more."""
+    before_x, before_y = corner[0] - corner[2], corner[1] - corner[3]
+    after_x, after_y = corner[4] - corner[0], corner[5] - corner[1]
+    cross = before_x * after_y - before_y * after_x
+    dot = before_x * after_x + before_y * after_y
+    return dot <= 0.0 or abs(cross) >= TAN_SHARP * dot
 
 
 def _places(

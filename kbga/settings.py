@@ -168,14 +168,14 @@ class KBGAPlusSettings(KBGASettings):
     tournament_size : 2, the mildest choice.
     penalty : 100; it comes out alike from 10 to 1000.
     repair_candidates : 200, most often all: the one way through may be at any of them.
-    repair_limit : 1: a repair makes a path longer, so one that is longer already than the best
-        feasible one is not worth the checks.
+    repair_limit : 1.1: a repair makes a path longer, so one that is longer already than the best
+        feasible one is seldom worth the checks. With 1 some routes are never laid.
     improvement_radius : 8: the search goes on from each better place, its steps doubled or halved.
     rounds : 8: a child on a new route lives until it is repaired.
     remembers : no node is tried again that can't have changed.
     corner_nodes : shortest paths bend at corners, and passages may be narrower than the lattice.
     taut : 1.1: what is longer is seldom the best route's.
-    immigrants : 0.5: a population that has converged finds no other route by itself.
+    immigrants : 0.3: a population that has converged finds no other route by itself.
     proves : no run searches for what there is not.
     lattice_over : the region; most of a map that a robot has drawn can't be reached.
     """
@@ -185,13 +185,13 @@ class KBGAPlusSettings(KBGASettings):
     tournament_size: int = 2
     penalty: float = 100.0
     repair_candidates: int = 200
-    repair_limit: float = 1.0
+    repair_limit: float = 1.1
     improvement_radius: int = 8
     rounds: int = 8
     remembers: bool = True
     corner_nodes: bool = True
     taut: float = 1.1
-    immigrants: float = 0.5
+    immigrants: float = 0.3
     proves: bool = True
     lattice_over: Literal["room", "region"] = "region"
 

@@ -205,6 +205,9 @@ def _pull_bend(
     ax, ay = string[k - 1, 0], string[k - 1, 1]
     bx, by = string[k, 0], string[k, 1]
     cx, cy = string[k + 1, 0], string[k + 1, 1]
+    if (bx == ax and by == ay) or (bx == cx and by == cy):  # twice: a node lies on the goal
+        _replace(string, count, k, 0)
+        return count - 1
     side = orientation(ax, ay, cx, cy, bx, by)
     x, y = ax, ay
     added = 0

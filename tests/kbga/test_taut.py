@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from kbga.algorithm import KBGA
@@ -38,6 +38,7 @@ def pulled(path: np.ndarray, scene: Scene) -> np.ndarray:
 
 
 @settings(max_examples=counts(150, 25))
+@example(162594)  # a node on the goal
 @given(SEEDS)
 def test_a_taut_path_is_free_and_no_longer_and_bends_at_vertices_only(seed):
     scene = random_scene(np.random.default_rng(seed))
