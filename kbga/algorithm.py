@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kbga.counter import ASKED, COMPUTED, LIMIT, is_spent, make_counter
+from kbga.deadline import Deadline
 from kbga.draws import LEAST_BLOCK, Draws, left_of, make_draws, refill
 from kbga.dynamic import disturb, most_draws_of_disturbance, renumber_corners, restart
 from kbga.encoding import Population, copy_chromosome, empty_population, path_of
@@ -116,6 +117,7 @@ class KBGA:
         self.lowest_cost = float("inf")
         self.generation_of_lowest = 0
         self._reports: dict[int, GenerationReport] = {}
+        self._children_made = 0
         first_population(
             self.population,
             query.start,
@@ -169,25 +171,37 @@ class KBGA:
             and self.generation - self.generation_of_best >= self.settings.stagnation
         )
 
-    def step(self, on_improvement: Callable[["KBGA"], object] | None = None) -> bool:
+    def step(
+        self,
+        on_improvement: Callable[["KBGA"], object] | None = None,
+        deadline: Deadline | None = None,
+    ) -> bool:
         """Do one generation; whether it found a better feasible path.
 
         Parameters
         ----------
         on_improvement : callable, optional
             Called with this object for each better path, as soon as the child is there.
+        deadline : Deadline, optional
+            Looked at on the way; the generation stays half done where the time is over.
         """
         self.generation += 1
         improved = False
         self._renew()
-        made, count = 0, len(self.population.chromosomes)
+        made, count = 0, self._size
         while made < count:
+            last = count
+            if deadline is not None:
+                last = min(count, made + deadline.children_after(self._children_made))
+                if last == made:  # the parents are the population
+                    return improved
             before = made
             draws = self._refilled(most_draws_of_a_pair(self._rates))
             made = next_children(
                 self.population,
                 self._children,
                 before,
+                last,
                 self._least_cost,
                 self._scratch,
                 self._problem,
@@ -196,11 +210,12 @@ class KBGA:
                 self._counter,
                 self._tally,
             )
+            self._children_made += made - before
             if self._take_best(self._children, before, made):
                 improved = True
                 if on_improvement is not None:
                     on_improvement(self)
-            if self.is_spent:  # the generation stays half done: the parents are the population
+            if self.is_spent:  # as where the time is over
                 return improved
         keep_elite(self.population, self._children)
         self.population, self._children = self._children, self.population
@@ -414,6 +429,7 @@ class KBGA:
         on_improvement: Callable[["KBGA"], object] | None = None,
         *,
         trace: bool = False,
+        left: Callable[[], float] | None = None,
     ) -> NDArray[np.float64] | None:
         """Evolve until a stop criterion holds; the best feasible path, or None.
 
@@ -429,6 +445,9 @@ class KBGA:
             Called with this object whenever there is a better path, also within a generation.
         trace : bool
             Keep a report of each generation, for :meth:`trace`.
+        left : callable, optional
+            The seconds that are left. Asked for within a generation too, so that evolution ends
+            when they are over, and not some children later.
 
         Returns
         -------
@@ -452,6 +471,7 @@ class KBGA:
         >>> len(trace) == ga.generation + 1
         True
         """
+        deadline = None if left is None else Deadline(left)
         improved = self.best_path is not None
         if improved and self.generation == 0 and on_improvement is not None:
             on_improvement(self)
@@ -460,10 +480,10 @@ class KBGA:
                 self._reports[self.generation] = self.report()
             answer = None if on_generation is None else on_generation(self, improved)
             ended = answer is not None and not answer
-            ended |= self.is_spent or self.stagnant
+            ended |= self.is_spent or self.stagnant or (left is not None and left() <= 0.0)
             if ended or self.generation >= self.settings.max_generations:
                 return self.best_path
-            improved = self.step(on_improvement)
+            improved = self.step(on_improvement, deadline)
 
 
 def _query_of(scene: Scene, query: Query | str | None) -> Query:

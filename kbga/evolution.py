@@ -103,6 +103,7 @@ def next_children(
     parents: Population,
     children: Population,
     first: int,
+    last: int,
     best: float,
     scratch: Scratch,
     problem: Problem,
@@ -111,16 +112,16 @@ def next_children(
     counter: np.ndarray,
     tally: np.ndarray,
 ) -> int:
-    """Fill ``children`` with the offspring of ``parents``, two at a time, from place ``first`` on.
+    """Fill places ``first`` to ``last`` of ``children`` with offspring, two at a time.
 
     It pauses after a feasible child that costs less than ``best``, so that a better path is known
     when it is found, to the caller and to the repairs that follow; and where too few random numbers
     are left, or no question may be asked any more. Called again with the new best, it goes on.
-    Returns the place to go on from: the number of parents, at the end.
+    Returns the place to go on from. Only at the end of the generation may ``last`` be odd.
     """
     count = parents.chromosomes.size
     c = first
-    while c < count and left_of(draws) >= most_draws_of_a_pair(rates) and not is_spent(counter):
+    while c < last and left_of(draws) >= most_draws_of_a_pair(rates) and not is_spent(counter):
         i = tournament(parents.chromosomes, rates.tournament_size, draws)
         j = tournament(parents.chromosomes, rates.tournament_size, draws)
         d = min(c + 1, count - 1)  # an odd population has a last child without a twin

@@ -1,6 +1,8 @@
 """KBGA behind the plugin interface of ``suite.planner``."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from math import inf
 from typing import ClassVar
 
 import numpy as np
@@ -38,7 +40,7 @@ class KBGAPlanner(Planner[KBGASettings]):
         Without a feasible path, the claimed cost is that of the best infeasible one, penalties
         included, as the paper's Table 1 has it for the GA without specialised operators.
         The trace has a row per generation: best, mean, feasible_share, diversity and checks.
-        A budget of checks ends the run at once, any other after the generation that it ends in.
+        A budget of checks or time ends the run at once, also within a generation.
         """
         if self.settings.proves and (reason := no_way(scene, query)):
             return Plan(PlanStatus.INFEASIBLE, checks=0, computed_checks=0, reason=reason)
@@ -123,9 +125,9 @@ def evolved(ga: KBGA, budget: Budget, recorder: Recorder) -> Plan:
                 "checks": report.checks,
             }
         )
-        return within(budget, ga, recorder)
+        return budget.generations is None or ga.generation < budget.generations
 
-    path = ga.run(follow, improved)
+    path = ga.run(follow, improved, left=seconds_left(budget, recorder))
     found = path is not None
     return Plan(
         PlanStatus.SOLVED if found else PlanStatus.EXHAUSTED,
@@ -138,10 +140,9 @@ def evolved(ga: KBGA, budget: Budget, recorder: Recorder) -> Plan:
     )
 
 
-def within(budget: Budget, ga: KBGA, recorder: Recorder) -> bool:
-    """Whether the budget allows another generation."""
-    return (
-        (budget.generations is None or ga.generation < budget.generations)
-        and (budget.wall_s is None or recorder.wall_s() < budget.wall_s)
-        and (budget.cpu_s is None or recorder.cpu_s() < budget.cpu_s)
-    )
+def seconds_left(budget: Budget, recorder: Recorder) -> Callable[[], float] | None:
+    """What tells the seconds that are left of a budget; None if it has none of time."""
+    if budget.wall_s is None and budget.cpu_s is None:
+        return None
+    wall_s, cpu_s = (inf if s is None else s for s in (budget.wall_s, budget.cpu_s))
+    return lambda: min(wall_s - recorder.wall_s(), cpu_s - recorder.cpu_s())

@@ -34,6 +34,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "plan": planners.plan,
     "simulate": planners.simulate,
     "check": planners.check,
+    "warm-up": planners.warm_up,
     "new-planner": planners.new_planner,
     "run": runs.run,
     "merge": runs.merge,

@@ -1,4 +1,4 @@
-"""Commands that run one planner: plan, simulate, check, new-planner.
+"""Commands that run one planner: plan, simulate, check, warm-up, new-planner.
 
 Floors above the planner interface are imported inside the commands: pandas and matplotlib take
 longer to import than ``list`` takes to answer.
@@ -210,6 +210,39 @@ def _check_several(names: list[str], limit_s: float, style: TextFormat, *, lenie
     else:
         say("\n".join(checked.line for checked in done))
     return all(lenient if checked.kept is None else checked.kept for checked in done)
+
+
+def warm_up(
+    planners: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[PLANNER]...", help="Their names; default: all that are installed."
+        ),
+    ] = None,
+    plugin: PluginOption = None,
+    style: TextStyle = TextFormat.TEXT,
+) -> None:
+    """Compile what planners need, and the exact solver, so that no later command has to.
+
+    Once after an install or an update: with that in a container's image, its first `plan` starts
+    at once. What is compiled already is only loaded.
+
+    Example: kbga-bench warm-up
+
+    Example: kbga-bench warm-up kbga kbga-plus
+    """
+    from suite.harness.warm_up import warm_up_each
+
+    use_plugins(plugin)
+    done = []
+    with working("compiling"):
+        for warmed in warm_up_each(planners or None):
+            done.append(warmed)
+            if style is TextFormat.TEXT:
+                say(warmed.line)
+    if style is TextFormat.JSON:
+        print_json([warmed.as_data for warmed in done])
+    raise typer.Exit(0 if all(warmed.is_well for warmed in done) else 1)
 
 
 def new_planner(

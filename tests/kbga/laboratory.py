@@ -153,6 +153,7 @@ class Laboratory:
             self.population,
             self.children,
             first,
+            len(self.population.chromosomes),
             best,
             self.scratch,
             self.problem,
