@@ -105,19 +105,22 @@ perf: setup-dev
 # Everything in results/ that comes from a matrix: three quarters of an hour on two cores, nothing
 # else running.
 STUDIES := resolution obstacles plus kbga-plus readings ablation mutation-rate penalty first-population tuning
-CAMPAIGNS := ompl-tuning paper-static paper-dynamic all-planners alignment $(STUDIES)
+CAMPAIGNS := ompl-tuning paper-static paper-dynamic all-planners alignment rivals $(STUDIES)
 PAPER := paper-static paper-dynamic resolution
 NO_ROWS := --leave-out paths --leave-out traces
 # What stands in paper-static is not drawn again, and a study has a figure of its own.
 NO_PICTURES := --leave-out comparisons --leave-out paper-pictures
+BRIEF := --leave-out events --leave-out scene-pictures --leave-out long-tables
 $(STUDIES:%=results-%): LEAVE := $(NO_ROWS) $(NO_PICTURES)
 # The paper's Figure 13 is of the ablation.
 results-ablation: LEAVE := $(NO_ROWS) --leave-out events --leave-out comparisons
 # Figures of the paper and of the study come out of these traces.
-results-resolution results-first-population: LEAVE := --leave-out paths $(NO_PICTURES)
+results-resolution results-first-population: LEAVE := --leave-out paths --leave-out events $(NO_PICTURES)
+results-penalty results-tuning: LEAVE := $(NO_ROWS) --leave-out events $(NO_PICTURES)
 results-paper-static results-paper-dynamic: LEAVE := --leave-out paths
 results-all-planners: LEAVE := $(NO_ROWS) --leave-out paper-pictures
-results-alignment results-ompl-tuning results-plus results-kbga-plus: LEAVE := $(NO_ROWS) --leave-out events $(NO_PICTURES)
+results-alignment results-ompl-tuning results-plus: LEAVE := $(NO_ROWS) --leave-out events $(NO_PICTURES)
+results-kbga-plus results-rivals: LEAVE := $(NO_ROWS) $(NO_PICTURES) $(BRIEF)
 
 results: $(CAMPAIGNS:%=results-%)
 	rm -f out/paper.db
@@ -132,12 +135,12 @@ $(CAMPAIGNS:%=results-%): results-%: setup
 	$(BIN)/kbga-bench results out/$*.db results/$* $(LEAVE)
 
 # On maps of your own, which are not copied: MAPS=FOLDER.
-results-real-maps results-real-maps-tuning: results-%: setup
+results-real-maps results-real-maps-tuning results-kbga-plus-maps: results-%: setup
 	@test -d "$(MAPS)" || { echo "Say where maps are, MAPS=FOLDER. Where they are to be had stands" \
 		"in suite/scenes/maps/README.md."; exit 2; }
 	mkdir -p out
 	$(BIN)/kbga-bench run $* --maps $(MAPS) --store out/$*.db --jobs $(JOBS)
-	$(BIN)/kbga-bench results out/$*.db results/$* $(NO_ROWS) --leave-out events $(NO_PICTURES)
+	$(BIN)/kbga-bench results out/$*.db results/$* $(NO_ROWS) $(NO_PICTURES) $(BRIEF)
 
 # The search for the reading of the paper; what it tried stays in out/, so that it can go on.
 search-readings: setup

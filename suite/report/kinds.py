@@ -38,6 +38,9 @@ class Part(StrEnum):
 
     COMPARISONS : pictures of how the planners compare.
     PAPER_PICTURES : those like the paper's.
+    SCENE_PICTURES : those of the best paths in a scene, or on a map.
+    LONG_TABLES : the rows behind a table, where they are more than 150 kB: made from the runs again
+        by `kbga-bench tables`.
     """
 
     EVENTS = "events"
@@ -45,3 +48,5 @@ class Part(StrEnum):
     PATHS = "paths"
     COMPARISONS = "comparisons"
     PAPER_PICTURES = "paper-pictures"
+    SCENE_PICTURES = "scene-pictures"
+    LONG_TABLES = "long-tables"

@@ -4,6 +4,7 @@ import hashlib
 import json
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +52,9 @@ from suite.store.read import (
 from suite.store.scenes import KeptScenes
 
 MANIFEST = "manifest.json"
+
+LONG = 150_000
+"""Bytes of a table of the rows behind another one, from which on it is a long one."""
 
 REPLANNING = "replanning"
 """Name of the figure of simulated runs."""
@@ -101,7 +105,10 @@ def write_results(
     folder = made_folder(directory)
     tables = read_tables(store)
     files = write_tables([t for t in tables if not t.detail], folder, TableFormat.MARKDOWN)
-    files += write_tables(tables, folder, TableFormat.CSV)
+    longest = LONG if Part.LONG_TABLES in leave_out else inf
+    files += write_tables(
+        [t for t in tables if not _is_longer(t, longest)], folder, TableFormat.CSV
+    )
     rows = made_folder(folder / "rows")
     files += export_rows(store, rows, "parquet", leave_out=leave_out, names_only=True)
     for name, figure in _figures(store, shown, kept, scenes, leave_out):
@@ -113,6 +120,11 @@ def write_results(
     with writing(manifest):
         manifest.write_text(json.dumps(made, indent=2) + "\n", encoding="utf-8")
     return [*files, manifest]
+
+
+def _is_longer(table: Table, longest: float) -> bool:
+    """Whether a table of the rows behind another one has more than so many bytes as CSV."""
+    return table.detail and len(render(table, TableFormat.CSV).encode()) > longest
 
 
 def write_tables(tables: Sequence[Table], directory: Path, style: TableFormat) -> list[Path]:
@@ -156,8 +168,9 @@ def _figures(
     apart = [(scene, query) for scene, query in scenes if scene.name not in on_maps]
     if Part.PAPER_PICTURES not in leave_out:
         yield from paper_pictures(planned, paths, read_snapshots(store), apart).items()
-    yield from _scene_figures(planned, paths, apart)
-    yield from _map_figures(only_maps(steps), paths, scenes)
+    if Part.SCENE_PICTURES not in leave_out:
+        yield from _scene_figures(planned, paths, apart)
+        yield from _map_figures(only_maps(steps), paths, scenes)
     if not driven.empty:
         yield REPLANNING, plot_replanning(driven, read_replans(store))
         yield from _snapshot_sheets(driven, store, kept)
