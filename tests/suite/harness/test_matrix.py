@@ -115,7 +115,7 @@ def test_a_list_of_seeds_is_taken_as_it_is(written):
     assert matrix.seeds == (5, 2)
 
 
-OF_A_FOLDER = ("real-maps", "real-maps-tuning")
+OF_A_FOLDER = ("real-maps", "real-maps-tuning", "kbga-plus-maps")
 """Matrices whose scenes are the user's maps."""
 
 OF_MANY_SCENES = ("obstacles", "alignment")
