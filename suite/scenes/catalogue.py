@@ -16,6 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from suite.errors import SceneError, did_you_mean
+from suite.scenes.families.instance import FAMILIES, instance, parse_family_name
 from suite.scenes.frozen import frozen
 from suite.scenes.geojson import read_scene, stated_radius
 from suite.scenes.kept import SUFFIX, read_kept
@@ -122,7 +123,8 @@ def generated_names() -> list[str]:
 
     There are more: ``scattered_N-S`` has N obstacles and the seed S, ``scattered_N`` the seed 0,
     see :func:`suite.scenes.scattered.scattered`; ``moving-S`` is dynamic and has the seed S, see
-    :func:`suite.scenes.moving.moving`.
+    :func:`suite.scenes.moving.moving`; ``maze-S`` and the other families of
+    :mod:`suite.scenes.families.instance`.
 
     Returns
     -------
@@ -350,10 +352,14 @@ def _is_path(name_or_path: str | Path) -> bool:
 
 
 def _is_generated(name: str) -> bool:
-    return parse_scattered_name(name) is not None or parse_moving_name(name) is not None
+    parsers = (parse_scattered_name, parse_moving_name, parse_family_name)
+    return any(parse(name) is not None for parse in parsers)
 
 
 def _generated(name: str) -> Scene:
+    member = parse_family_name(name)
+    if member is not None:
+        return instance(*member)
     numbers = parse_scattered_name(name)
     return scattered(*numbers) if numbers is not None else moving(parse_moving_name(name) or 0)
 
@@ -380,6 +386,7 @@ def _unknown(name: str) -> str:
     message = (
         f"no scene '{name}'. Catalogue: {', '.join(_PAPER_ORDER)}. Dynamic: {', '.join(_DYNAMIC)}. "
         f"Generated: {', '.join(generated_names())}, or scattered_N-S for N obstacles and seed S, "
-        f"moving-S for seed S. Controls: {', '.join(_ALIGNED)}."
+        f"moving-S for seed S, or a family's name and -S: {', '.join(FAMILIES)}. "
+        f"Controls: {', '.join(_ALIGNED)}."
     )
     return message + did_you_mean(name, [*_FILES, *generated_names()])

@@ -11,11 +11,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
-from shapely.geometry import Point, Polygon
+from shapely.geometry import Polygon
 
 from suite.errors import SceneError
 from suite.scenes.outlines import concave_outline, convex_outline
+from suite.scenes.placing import moved, scaled, scatter
 from suite.scenes.scene import DEFAULT_QUERY, Scene, make_scene
 
 MOST = 10_000
@@ -24,7 +24,6 @@ MOST = 10_000
 WORKSPACE = shapely.box(0.0, 0.0, 100.0, 100.0)
 START = (6.0, 7.0)
 GOAL = (93.0, 92.0)
-DECIMALS = 2
 
 CONCAVE = 0.24
 """Concave obstacles for each convex part: nearly half of all obstacles, as in ``obstacles_40``."""
@@ -45,13 +44,6 @@ GAP = 0.19
 FEWEST = 20
 """Convex parts that share the workspace. Fewer don't grow to fill it but leave it emptier: a single
 one that covers a fifth of it may leave no room for the start."""
-
-BATCH = 0.25
-"""Of the obstacles that wait for a place, the share that is thrown at a time, the largest first.
-Thrown all at a time, small ones would take the room of large ones."""
-
-SHRINK = 0.997
-"""Factor on an obstacle at each throw that finds no place, so that one finds a place in the end."""
 
 _NAME = re.compile(r"scattered_([0-9]{1,20})(?:-([0-9]{1,20}))?")
 
@@ -91,7 +83,7 @@ def scattered(obstacles: int, seed: int) -> Scene:
     rng = np.random.default_rng([seed, obstacles])
     side = np.sqrt(WORKSPACE.area / max(obstacles, FEWEST))
     concave = _drawn(concave_outline, round(CONCAVE * obstacles), side, rng)
-    placed = _scatter(concave, [_blocker(side, rng)], GAP * side, rng)
+    placed = scatter(concave, [_blocker(side, rng)], GAP * side, WORKSPACE, (START, GOAL), rng)
     scene = _scene(obstacles, seed, placed)
     # Only its arrangement tells into how many parts an obstacle is cut. Convex ones make up.
     while scene.part_count != obstacles:
@@ -99,7 +91,7 @@ def scattered(obstacles: int, seed: int) -> Scene:
             placed = placed[:-1]
         else:
             convex = _drawn(convex_outline, obstacles - scene.part_count, side, rng)
-            placed = _scatter(convex, placed, GAP * side, rng)
+            placed = scatter(convex, placed, GAP * side, WORKSPACE, (START, GOAL), rng)
         scene = _scene(obstacles, seed, placed)
     return scene
 
@@ -160,67 +152,11 @@ def _drawn(
     """Obstacles around the origin, the largest first; ``side`` of a part's square, metres."""
     multiples = rng.lognormal(-0.5 * SPREAD**2, SPREAD, number).clip(*SIZES)
     scales = side * np.sqrt(HULL * np.sort(multiples)[::-1])
-    return [_scaled(outline(rng), scale) for scale in scales.tolist()]
+    return [scaled(outline(rng), scale) for scale in scales.tolist()]
 
 
 def _blocker(side: float, rng: np.random.Generator) -> Polygon:
     """A convex obstacle whose middle lies on the straight line from start to goal."""
     along = rng.uniform(0.4, 0.6)
     place = (1.0 - along) * np.array(START) + along * np.array(GOAL)
-    return _moved(_drawn(convex_outline, 1, side, rng)[0], place)
-
-
-def _scaled(obstacle: Polygon, factor: float) -> Polygon:
-    return shapely.transform(obstacle, lambda xy: factor * xy)
-
-
-def _moved(obstacle: Polygon, place: NDArray[np.float64]) -> Polygon:
-    """The obstacle around another point (2,), in centimetres, its ring in canonical order."""
-    moved = shapely.transform(obstacle, lambda xy: np.round(xy + place, DECIMALS))
-    return shapely.normalize(moved)
-
-
-def _scatter(
-    obstacles: Sequence[Polygon],
-    placed: Sequence[Polygon],
-    gap: float,
-    rng: np.random.Generator,
-) -> list[Polygon]:
-    """Throw obstacles until each lies ``gap`` metres from all others, the border, start and goal.
-
-    Parameters
-    ----------
-    obstacles : sequence of Polygon
-        Around the origin, the largest first.
-    placed : sequence of Polygon
-        Those that stay where they are.
-
-    Returns
-    -------
-    list of Polygon
-        ``placed``, then the others where they have come to lie.
-    """
-    low, high = np.reshape(WORKSPACE.bounds, (2, 2))
-    fixed = [WORKSPACE.exterior, Point(START), Point(GOAL)]
-    placed = list(placed)
-    waiting = list(obstacles)
-    while waiting:
-        thrown = waiting[: int(np.ceil(BATCH * len(waiting)))]
-        places = rng.uniform(low, high, (len(thrown), 2))
-        tries = [_moved(obstacle, place) for obstacle, place in zip(thrown, places, strict=True)]
-        fits = _fits(tries, [*fixed, *placed], gap)
-        placed += [tries[i] for i in np.flatnonzero(fits)]
-        again = [_scaled(thrown[i], SHRINK) for i in np.flatnonzero(~fits)]
-        waiting = again + waiting[len(thrown) :]
-    return placed
-
-
-def _fits(
-    tries: Sequence[Polygon], standing: Sequence[shapely.Geometry], gap: float
-) -> NDArray[np.bool_]:
-    """Which tries are ``gap`` metres from all that stands and from all earlier tries, (n,) bool."""
-    everything = np.array([*standing, *tries], dtype=np.object_)
-    tree = shapely.STRtree(everything)
-    tried, near = tree.query(everything[len(standing) :], predicate="dwithin", distance=gap)
-    crowded = tried[near < tried + len(standing)]
-    return ~np.isin(np.arange(len(tries)), crowded)
+    return moved(_drawn(convex_outline, 1, side, rng)[0], place)

@@ -519,9 +519,10 @@ def with_snapped_ends(scene: Scene, name: str) -> Scene:
     return _with_same_geometry(snapping, queries=asked)
 
 
-def renamed(scene: Scene, name: str) -> Scene:
-    """The same scene of another name, with all that was computed of it."""
-    return _with_same_geometry(scene, name=name)
+def renamed(scene: Scene, name: str, properties: Mapping[str, Any] | None = None) -> Scene:
+    """The same scene of another name and other properties, with all that was computed of it."""
+    told = scene.properties if properties is None else MappingProxyType(dict(properties))
+    return _with_same_geometry(scene, name=name, properties=told)
 
 
 def _with_same_geometry(scene: Scene, **changes: Any) -> Scene:

@@ -260,8 +260,10 @@ def test_an_unknown_name_is_answered_with_the_catalogue_and_the_nearest_name():
         "no scene 'mase'. Catalogue: unstructured, maze, zigzag, double_u, clustered, "
         "obstacles_20, obstacles_30, obstacles_40. Dynamic: door, unknown_obstacles. Generated: "
         "scattered_100, scattered_300, scattered_1000, scattered_3000, moving-0, or scattered_N-S "
-        "for N obstacles and seed S, moving-S for seed S. Controls: maze_aligned, "
-        "zigzag_aligned, double_u_aligned, door_aligned, unknown_obstacles_aligned. "
+        "for N obstacles and seed S, moving-S for seed S, or a family's name and -S: scattered, "
+        "maze, office, zigzag, bug_trap, spiral, narrow, forest, city, clutter, "
+        "rooms_with_clutter. Controls: maze_aligned, zigzag_aligned, double_u_aligned, "
+        "door_aligned, unknown_obstacles_aligned. "
         "Did you mean 'maze'?"
     )
 
