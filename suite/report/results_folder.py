@@ -170,7 +170,7 @@ def _figures(
         yield from paper_pictures(planned, paths, read_snapshots(store), apart).items()
     if Part.SCENE_PICTURES not in leave_out:
         yield from _scene_figures(planned, paths, apart)
-        yield from _map_figures(only_maps(steps), paths, scenes)
+    yield from _map_figures(only_maps(steps), paths, scenes, leave_out)
     if not driven.empty:
         yield REPLANNING, plot_replanning(driven, read_replans(store))
         yield from _snapshot_sheets(driven, store, kept)
@@ -200,9 +200,12 @@ def _scene_figures(
 
 
 def _map_figures(
-    steps: Steps, paths: Mapping[str, NDArray[np.float64]], scenes: list[tuple[Scene, Query]]
+    steps: Steps,
+    paths: Mapping[str, NDArray[np.float64]],
+    scenes: list[tuple[Scene, Query]],
+    leave_out: Collection[Part],
 ) -> Iterator[tuple[str, Figure]]:
-    """Each map once, with its hardest queries, and all queries as marks."""
+    """All queries as marks, and each map once, with its hardest queries."""
     if steps.runs.empty:
         return
     runs, measures = steps.runs, query_measures(steps)
@@ -211,7 +214,7 @@ def _map_figures(
     asked = {(scene.name, query.name): (scene, query) for scene, query in scenes}
     for place, here in measures.groupby("place", sort=False):
         names = hardest(here)
-        if not names or len(planners) > len(LINES):
+        if not names or len(planners) > len(LINES) or Part.SCENE_PICTURES in leave_out:
             continue
         on_map = runs[runs["place"] == place]
         hard = [

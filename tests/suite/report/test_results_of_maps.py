@@ -6,6 +6,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from suite.report import results_folder
 from suite.report.kinds import Part
 from suite.report.results_folder import write_results
 from tests.perf.many_queries import write_many
@@ -43,3 +44,13 @@ def test_the_rows_name_no_folder_and_the_manifest_says_where_maps_come_in(files)
     assert set(sources) == {Path(source).name for source in sources}
     made_by = json.loads(files["manifest.json"].read_text())["made_by"]
     assert made_by[0].endswith(" --maps MAPS --store STORE")
+
+
+def test_pictures_of_maps_and_long_tables_can_be_left_out(tmp_path, monkeypatch):
+    monkeypatch.setattr(results_folder, "LONG", 1000)  # bytes: twelve queries are no long table yet
+    store = write_many(tmp_path, QUERIES, PLANNERS)
+    parts = {Part.COMPARISONS, Part.SCENE_PICTURES, Part.LONG_TABLES}
+    names = {file.name for file in write_results(store, tmp_path / "out", leave_out=parts)}
+    assert [name for name in names if name.endswith(".png")] == ["queries.png"]
+    assert "maps.csv" in names
+    assert "queries.csv" not in names
