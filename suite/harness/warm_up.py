@@ -3,9 +3,11 @@
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import Any
 
 from suite.errors import PluginError, sentence
+from suite.planner import Planner
 from suite.plugins.discovery import load_planner, planner_info, planner_names
 from suite.scenes.catalogue import load_scene
 from suite.scenes.exact import shortest_path
@@ -72,7 +74,11 @@ def warm_up_each(planners: Sequence[str] | None) -> Iterator[Warmed]:
         except PluginError as error:
             yield Warmed(name, 0.0, sentence(error), is_missing=planners is None)
         else:
-            yield _timed(name, planner().warm_up)
+            yield _timed(name, partial(_warm_up, planner))
+
+
+def _warm_up(planner: type[Planner]) -> None:
+    planner().warm_up()
 
 
 def _warm_up_exact_solver() -> None:
