@@ -155,7 +155,7 @@ def _nearest(lines: NDArray[np.float64], place: float) -> int:
 
 @kernel
 def _is_sharp(corner: NDArray[np.float64]) -> bool:
-    """Whether a corner (6,), with the ends of its edges, turns by SHARP or more."""
+    """Whether a corner (6,), with the ends of its edges, turns by 10 degrees or more."""
     before_x, before_y = corner[0] - corner[2], corner[1] - corner[3]
     after_x, after_y = corner[4] - corner[0], corner[5] - corner[1]
     cross = before_x * after_y - before_y * after_x

@@ -70,7 +70,7 @@ class BugTrap:
 
 
 def _stand_apart(walls: list[Polygon]) -> bool:
+    """Whether vessels lie apart from the border and, where there are two, from each other."""
     inner = ROOM.buffer(-APART)
-    return all(inner.contains(wall) for wall in walls) and walls[0].distance(walls[-1]) >= (
-        APART if len(walls) > 1 else 0.0
-    )
+    are_inside = all(inner.contains(wall) for wall in walls)
+    return are_inside and (len(walls) == 1 or walls[0].distance(walls[1]) >= APART)
